@@ -45,6 +45,7 @@ struct FarmPlan {
   std::string name, engine, program, container, job_file;
   std::string folder;       // of the farm: `farm` in that of the run, absolute like the other paths
   std::string run_folder;   // where the outputs lie
+  std::string run_name;     // what the run's own files there begin with, run_name_of() without the folder
   std::string work_folder;  // where the tasks are started, since paths in the job count from there
   // Frames depend on those before them: tasks trace (SequenceStage::trace), and one run finishes. Otherwise tasks
   // render and `merge` joins.

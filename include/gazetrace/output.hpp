@@ -68,8 +68,10 @@ void check_display_image_size(const DisplaySettings& settings, int width_px, int
 struct OutputSettings {
   ExrSettings exr;
   DisplaySettings display;
-  std::string map_pattern;    // EXR of the sampling map: region, samples per pixel, eccentricity; empty: none
-  std::string run_directory;  // where timing.csv and run.json are written; empty: nowhere
+  std::string map_pattern;  // EXR of the sampling map: region, samples per pixel, eccentricity; empty: none
+  // The run's own files begin with this: "out/frame" stands for out/frame.timing.csv and out/frame.run.json, see
+  // run_name_of(). Empty: none are written.
+  std::string run_name;
   bool overwrite = false;
   bool resume = false;
   bool trust_files = false;  // `resume` believes the headers of finished files, and does not compare their content
@@ -210,12 +212,18 @@ struct RunRecord {
 std::string run_record_json(const RunRecord& record);
 RunRecord read_run_record(const std::string& path);  // Error(input)
 
-// timing.csv and run.json, or timing.1-100.csv and run.1-100.json for a part of a sequence.
-std::string timing_file_name(const std::string& directory, const std::string& frames, bool is_part);
-std::string run_record_file_name(const std::string& directory, const std::string& frames, bool is_part);
+// What the files that tell of a sequence begin with: its folder and its name without number and suffix, so that
+// out/frame.####.exr and out/frame.####.png, which one run writes, share "out/frame". A sequence that has no name
+// beside its number, such as out/####.exr, gives "out/".
+std::string run_name_of(const std::string& pattern);
+std::string folder_of_run(const std::string& run_name);
+// NAME.timing.csv and NAME.run.json, or NAME.timing.1-100.csv and NAME.run.1-100.json for a part of a sequence; without
+// NAME timing.csv and so on, which were the names of every sequence before version 1.
+std::string timing_file_name(const std::string& run_name, const std::string& frames, bool is_part);
+std::string run_record_file_name(const std::string& run_name, const std::string& frames, bool is_part);
 
-// The file of a frame that was traced and not yet reconstructed: traced.0001.sparse
-std::string traced_file_name(const std::string& directory, std::int32_t frame);
+// The file of a frame that was traced and not yet reconstructed: NAME.traced.0001.sparse
+std::string traced_file_name(const std::string& run_name, std::int32_t frame);
 
 // How the frames of a sequence were divided among the tasks of an array job. The first task that comes writes it down
 // beside the outputs, and it is never replaced: so all tasks have the same borders, and a chunk that never began is
@@ -231,13 +239,15 @@ ChunkFile read_chunk_file(const std::string& path);  // Error(input)
 
 // What the run over one part left in a directory.
 struct RunPart {
+  std::string run_name;  // of the sequence that it is a part of
   std::string timing_path, record_path;
   RunRecord record;
   std::map<std::int32_t, TimingRow> rows;
 };
-// All parts in a directory, ordered by name. Error(input) where there are none, where records are missing, and where
-// settings or inputs differ. The files of a part that was killed are those in its journal.
-std::vector<RunPart> read_run_parts(const std::string& directory);
+// All parts of a sequence, ordered by name: `where` is their folder or, where that has parts of several sequences, the
+// pattern of the pictures, out/frame.####.exr. Error(input) where there are none, where records are missing, and where
+// sequences, settings or inputs differ. The files of a part that was killed are those in its journal.
+std::vector<RunPart> read_run_parts(const std::string& where);
 
 // The files of a run that is going on or was killed: beside its record, which takes them over at the end, a line for
 // each as it was written.
@@ -271,12 +281,12 @@ struct MergeResult {
 };
 // The record of the whole run. Where the parts differ, the record lists what each says, or a warning is added.
 RunRecord join_records(const std::vector<RunPart>& parts, const std::string& frames, Warnings& warnings);
-// Joins the parts found in a directory into timing.csv and run.json. Error(input) where the settings digests of parts
-// differ, where parts overlap, where files are not those that the parts wrote, and where frames are missing (unless
-// allowed); Error(usage) where timing.csv or run.json exist and may not be overwritten. Where frames depend on those
-// before them, each part must have had the history of all frames before it, for instance from another part's
+// Joins the parts of a sequence, see read_run_parts(), into its timing and record. Error(input) where the settings
+// digests of parts differ, where parts overlap, where files are not those that the parts wrote, and where frames are
+// missing (unless allowed); Error(usage) where timing or record exist and may not be overwritten. Where frames depend
+// on those before them, each part must have had the history of all frames before it, for instance from another part's
 // checkpoint; a history of only the last few frames (`preroll`) gives a warning.
-MergeResult merge_runs(const std::string& directory, const MergeOptions& options = {});
+MergeResult merge_runs(const std::string& where, const MergeOptions& options = {});
 
 // Writes the text to a temporary file beside `path`, and renames that.
 void write_text_atomically(const std::string& path, const std::string& text);

@@ -40,7 +40,7 @@ struct PipelineSettings : FrameSettings {
   std::int32_t checkpoint_every = 0;  // also write it after every so many frames; 0: only at the end
   std::string resume_from;            // a checkpoint whose last frame comes before the plan's first; empty: no history
   std::int32_t preroll = 0;           // so many frames at the plan's beginning are rendered for their history alone
-  // The plan is a part of a longer sequence: timing.csv and run.json carry the range of frames in their names.
+  // The plan is a part of a longer sequence: the names of its timing and record carry the range of frames.
   bool is_part = false;
   SequenceStage stage = SequenceStage::whole;
 };

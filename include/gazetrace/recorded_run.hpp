@@ -21,7 +21,7 @@ struct RecordedRun {
   [[nodiscard]] const JobSettings& settings() const { return resolved.job.settings; }
 };
 
-// The run whose record (run.json, or NAME.run.json of a single picture) lies beside the pictures of a pattern. Empty
+// The run whose record (NAME.run.json, see run_name_of()) lies beside the pictures of a pattern. Empty
 // where there is no record, and where it is the record of other pictures: `settings_digest` is the digest that the
 // pictures carry (FrameFacts::settings_digest). Throws Error(input) for a record that cannot be read.
 std::optional<RecordedRun> find_recorded_run(const std::string& pattern, const std::string& settings_digest);

@@ -96,7 +96,7 @@ class RenderTest(TestCase):
         with small_job(frames="1-100", output=[pattern]).render() as frames:
             next(frames)
         self.assertEqual(frames.left, list(range(2, 101)))
-        record = json.loads((self.folder / "run.json").read_text())
+        record = json.loads((self.folder / "f.run.json").read_text())
         self.assertIn("interrupted", json.dumps(record))
         rest = small_job(frames="1-3", output=[pattern], overwrite=True)
         self.assertEqual([frame.frame for frame in rest.render()], [1, 2, 3])
@@ -161,7 +161,7 @@ class RenderTest(TestCase):
             shown = _core.read_picture(str(self.folder / f"frame.{frame.frame:04d}.png"))
             np.testing.assert_array_equal(frame.display(), np.rint(shown.pixels * 255))
             timing.append(frame.timing)
-        header, *rows = (self.folder / "timing.csv").read_text().splitlines()
+        header, *rows = (self.folder / "f.timing.csv").read_text().splitlines()
         for row, ours in zip(rows, timing, strict=True):
             theirs = dict(zip(header.split(","), row.split(",")))
             for name in ("samples", "rays_primary", "rays_bounce", "fovea_samples", "gaze_event"):

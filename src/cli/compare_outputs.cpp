@@ -22,9 +22,7 @@ fs::path place_of(const std::string& path) {
 std::set<fs::path> files_read(const CompareJob& job, const CompareInputs& inputs) {
   std::set<fs::path> read;
   for (const std::string& pattern : {job.reference, job.test}) {
-    read.insert(place_of((fs::path(pattern).parent_path() / "run.json").string()));
-    read.insert(
-        place_of((fs::path(pattern).parent_path() / (fs::path(pattern).stem().string() + ".run.json")).string()));
+    read.insert(place_of(run_record_file_name(run_name_of(pattern), "", false)));
     for (const std::int32_t frame : inputs.frames) {
       read.insert(place_of(picture_path(pattern, frame)));
     }

@@ -72,7 +72,7 @@ void forget_earlier(const FarmPlan& plan) {
 }
 
 std::string record_of_chunk(const FarmPlan& plan, std::size_t chunk) {
-  return run_record_file_name(plan.run_folder, plan.chunks[chunk], true);
+  return run_record_file_name(run_name_of(plan), plan.chunks[chunk], true);
 }
 
 // Parts of an earlier division that have begun would be rendered once more, and then stand in the way of the merge.
@@ -100,7 +100,7 @@ void check_same_division(const FarmPlan& plan) {
       throw Error(ErrorKind::input, plan.run_folder,
                   fmt::format("holds parts of another division, in {} chunks, such as {}", earlier.chunks.size(),
                               fs::path(record).filename().string()),
-                  "divide it as before, or remove run.*.json, timing.*.csv and the pictures there");
+                  "divide it as before, or remove *run.*.json, *timing.*.csv and the pictures there");
     }
   }
 }
@@ -135,6 +135,10 @@ std::string absolute_path(const std::string& path) {
   return fs::absolute(path.empty() ? "." : path).lexically_normal().string();
 }
 
+std::string run_name_of(const FarmPlan& plan) {
+  return plan.run_folder + "/" + plan.run_name;
+}
+
 FarmPlan plan_farm(const FarmSettings& settings) {
   farm_engine(settings.engine);
   if (settings.chunks == 0) {
@@ -154,7 +158,9 @@ FarmPlan plan_farm(const FarmSettings& settings) {
   options.tell_idle = false;
   const ResolvedJob resolved = resolve(job, options);
 
-  FarmPlan plan = farm_plan_of(settings, resolved.pipeline.output.run_directory);
+  const std::string& run_name = resolved.pipeline.output.run_name;
+  FarmPlan plan = farm_plan_of(settings, folder_of_run(run_name));
+  plan.run_name = fs::path(run_name).filename().string();
   plan.traces_first = uses_history(resolved.pipeline) && resolved.job.settings.preroll == 0;
   if (plan.traces_first) {
     job.settings.stage = SequenceStage::trace;

@@ -28,6 +28,7 @@ void each_member(Plan& plan, const Visit& visit) {
   visit("job_file", plan.job_file);
   visit("folder", plan.folder);
   visit("run_folder", plan.run_folder);
+  visit("run_name", plan.run_name);
   visit("work_folder", plan.work_folder);
   visit("traces_first", plan.traces_first);
   visit("checkpoint", plan.checkpoint);

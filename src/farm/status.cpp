@@ -11,6 +11,7 @@
 
 #include "core/file_lock.hpp"
 #include "farm/engine.hpp"
+#include "farm/plan.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/output_lock.hpp"
 #include "output/written_file.hpp"
@@ -91,9 +92,9 @@ struct Outputs {
 // Counts the finished frames; true where these are all, each with its row in the table.
 bool observe_outputs(const FarmPlan& plan, const Outputs& outputs, FileCheck check, TaskStatus& task) {
   const std::vector<std::int32_t> wanted = parse_frame_list(task.frames);
-  const std::string record_path = run_record_file_name(plan.run_folder, outputs.name, outputs.is_part);
+  const std::string record_path = run_record_file_name(run_name_of(plan), outputs.name, outputs.is_part);
   const std::set<std::int32_t> finished = finished_frames(plan.run_folder, record_path, outputs.files_per_frame, check);
-  const std::set<std::int32_t> rows = frames_of_table(timing_file_name(plan.run_folder, outputs.name, outputs.is_part));
+  const std::set<std::int32_t> rows = frames_of_table(timing_file_name(run_name_of(plan), outputs.name, outputs.is_part));
   task.all = wanted.size();
   task.done = static_cast<std::size_t>(
       std::count_if(wanted.begin(), wanted.end(), [&](std::int32_t frame) { return finished.contains(frame); }));
@@ -107,7 +108,7 @@ TaskStatus observe_run(const FarmPlan& plan, const std::string& name, const std:
   task.name = name;
   task.frames = frames;
   task.exit_code = exit_code_of(plan, name);
-  const std::string record_path = run_record_file_name(plan.run_folder, outputs.name, outputs.is_part);
+  const std::string record_path = run_record_file_name(run_name_of(plan), outputs.name, outputs.is_part);
   const bool is_whole = observe_outputs(plan, outputs, check, task);
   std::error_code missing;
   const bool has_record = fs::exists(record_path, missing);

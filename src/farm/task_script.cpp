@@ -6,6 +6,7 @@
 #include <string>
 
 #include "farm/engine.hpp"
+#include "farm/plan.hpp"
 
 namespace gazetrace {
 namespace {
@@ -92,7 +93,7 @@ std::string finish_words(const FarmPlan& plan) {
                        shell_word(plan.run_folder), plan.confine ? " --confine" : "");
   }
   if (!plan.traces_first) {
-    return fmt::format("{} merge {} --overwrite", program_words(plan), shell_word(plan.run_folder));
+    return fmt::format("{} merge {} --overwrite", program_words(plan), shell_word(run_name_of(plan) + ".####"));
   }
   return fmt::format("{} render --config {} --stage finish --resume --checkpoint {} --checkpoint-every {}{}",
                      program_words(plan), shell_word(plan.job_file), shell_word(plan.checkpoint), kCheckpointEvery,

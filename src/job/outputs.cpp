@@ -100,6 +100,35 @@ void check_names_differ(const PipelineSettings& settings, std::vector<std::strin
   }
 }
 
+// Until the next version: a run of the version before, whose files had the names of no sequence, goes on under the
+// names of today.
+void take_former_names(const OutputSettings& output, const std::vector<std::string>& files) {
+  const std::string folder = folder_of_run(output.run_name) + "/";
+  const std::size_t name = fs::path(output.run_name).filename().string().size();
+  const auto former = [&](const std::string& path) {
+    return folder + fs::path(path).filename().string().substr(name > 0 ? name + 1 : 0);
+  };
+  std::error_code ignored;
+  if (files.size() < 2 || name == 0 || fs::exists(files[0], ignored) || !fs::exists(former(files[0]), ignored)) {
+    return;
+  }
+  WrittenFiles written = read_file_journal(file_journal_name(former(files[0])));
+  try {
+    written.merge(read_run_record(former(files[0])).files);
+  } catch (const Error&) {
+    return;
+  }
+  // Whose record it is: another sequence may have left it there.
+  const bool is_ours = std::any_of(files.begin() + 2, files.end(), [&](const std::string& path) {
+    return written.contains(fs::path(path).lexically_relative(folder).string());
+  });
+  if (is_ours) {
+    fs::rename(former(files[1]), files[1], ignored);
+    fs::rename(file_journal_name(former(files[0])), file_journal_name(files[0]), ignored);
+    fs::rename(former(files[0]), files[0], ignored);
+  }
+}
+
 // A run that goes on must go on with all frames of the run so far.
 void check_earlier_run(const PipelineSettings& settings, const std::vector<std::int32_t>& frames) {
   const std::vector<std::string> files = output_files(settings, frames);
@@ -148,7 +177,7 @@ OutputSettings output_settings(const JobSettings& job) {
     place = pattern;
   }
   const std::string& first = !job.outputs.empty() ? job.outputs.front() : job.map_pattern;
-  output.run_directory = first.empty() ? std::string() : folder_of_frames(first);
+  output.run_name = first.empty() ? std::string() : run_name_of(first);
   return output;
 }
 
@@ -194,6 +223,7 @@ void prepare_outputs(const ResolvedJob& resolved) {
   const std::vector<std::int32_t>& frames = resolved.frames;
   check_names_differ(settings, output_files(settings, frames), resolved.input_digests);
   if (settings.output.resume) {
+    take_former_names(settings.output, output_files(settings, frames));
     check_earlier_run(settings, frames);
     const std::vector<std::string> files = output_files(settings, frames);
     if (!settings.output.overwrite && !files.empty()) {

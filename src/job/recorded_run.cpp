@@ -30,8 +30,8 @@ ResolvedJob resolve_for_viewing(Job job) {
   return resolve(job, options);
 }
 
-// The records in the folder of the pictures: of a sequence run.json, of a still one that is named after it or, where it
-// was written together with a picture of another name, after that one.
+// The records in the folder of the pictures: the one that is named after them, run.json of the version before and,
+// since pictures of several names may be written together, those of others.
 std::vector<std::string> records_beside(const std::string& pattern) {
   const fs::path folder(folder_of_frames(pattern));
   std::vector<std::string> records;
@@ -42,11 +42,7 @@ std::vector<std::string> records_beside(const std::string& pattern) {
       records.push_back(path.string());
     }
   };
-  if (has_frame_number(pattern)) {
-    add(folder / "run.json");
-    return records;
-  }
-  add(folder / (fs::path(pattern).stem().string() + ".run.json"));
+  add(run_record_file_name(run_name_of(pattern), "", false));
   add(folder / "run.json");
   std::error_code ignored;
   for (const fs::path& path : list_folder(folder, ignored)) {

@@ -127,15 +127,16 @@ void leave_out(const std::vector<BadFile>& bad, std::vector<RunPart>& parts, War
 
 }  // namespace
 
-MergeResult merge_runs(const std::string& directory, const MergeOptions& options) {
-  const std::string timing_path = timing_file_name(directory, "", false);
-  const std::string record_path = run_record_file_name(directory, "", false);
+MergeResult merge_runs(const std::string& where, const MergeOptions& options) {
+  std::vector<RunPart> parts = read_run_parts(where);
+  const std::string directory = folder_of_run(parts.front().run_name);
+  const std::string timing_path = timing_file_name(parts.front().run_name, "", false);
+  const std::string record_path = run_record_file_name(parts.front().run_name, "", false);
   for (const std::string& path : {timing_path, record_path}) {
     if (!options.overwrite && std::filesystem::exists(path)) {
       throw Error(ErrorKind::usage, path, "exists already", "give `overwrite` to replace it");
     }
   }
-  std::vector<RunPart> parts = read_run_parts(directory);
   refuse_traced_parts(parts);
   MergeResult result;
   if (!options.trust_files) {

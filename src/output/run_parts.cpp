@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -15,16 +17,35 @@
 namespace gazetrace {
 namespace {
 
-bool is_part_name(const std::string& name) {
-  return name.starts_with("timing.") && name.ends_with(".csv") && name != "timing.csv";
+// A file of a part, "NAME.timing.1-3.csv" or, in a folder of an earlier version, "timing.1-3.csv".
+struct PartName {
+  std::string run;   // "NAME", or nothing
+  std::string part;  // "1-3"
+};
+
+std::optional<PartName> part_name(const std::string& file, const std::string& stem, const std::string& suffix) {
+  const std::size_t at = file.rfind(stem);
+  const std::size_t part = at + stem.size();
+  if (at == std::string::npos || (at > 0 && file[at - 1] != '.') || !file.ends_with(suffix) ||
+      file.size() <= part + suffix.size()) {
+    return std::nullopt;
+  }
+  return PartName{file.substr(0, at > 0 ? at - 1 : 0), file.substr(part, file.size() - part - suffix.size())};
 }
 
-RunPart read_part(const std::filesystem::path& timing) {
+std::optional<PartName> part_of_record(const std::string& file) {
+  return part_name(file, "run.", ".json");
+}
+
+std::optional<PartName> part_of_timing(const std::string& file) {
+  return part_name(file, "timing.", ".csv");
+}
+
+RunPart read_part(const std::filesystem::path& timing, const PartName& name) {
   RunPart part;
+  part.run_name = (timing.parent_path() / name.run).string();
   part.timing_path = timing.string();
-  const std::string name = timing.filename().string();
-  const std::string middle = name.substr(7, name.size() - 7 - 4);
-  const std::string record_path = (timing.parent_path() / ("run." + middle + ".json")).string();
+  const std::string record_path = run_record_file_name(part.run_name, name.part, true);
   std::error_code ignored;
   if (!std::filesystem::exists(record_path, ignored)) {
     throw Error(ErrorKind::input, part.timing_path, "its run record " + record_path + " is missing",
@@ -68,6 +89,15 @@ void check_same_settings(const std::vector<RunPart>& parts) {
   }
 }
 
+void check_one_sequence(const std::vector<RunPart>& parts) {
+  for (const RunPart& part : parts) {
+    if (part.run_name != parts.front().run_name) {
+      throw Error(ErrorKind::input, part.timing_path, "is of another sequence than " + parts.front().timing_path,
+                  "name the pictures of one of them, as out/frame.####.exr");
+    }
+  }
+}
+
 void append_new(Warnings& to, const Warnings& from) {
   for (const std::string& text : from) {
     if (std::find(to.begin(), to.end(), text) == to.end()) {
@@ -78,36 +108,37 @@ void append_new(Warnings& to, const Warnings& from) {
 
 }  // namespace
 
-std::vector<RunPart> read_run_parts(const std::string& directory) {
-  std::vector<std::filesystem::path> paths, without_rows;
+std::vector<RunPart> read_run_parts(const std::string& where) {
+  const bool is_folder = std::filesystem::is_directory(where);
+  const std::string wanted = is_folder ? std::string() : run_name_of(where);
+  const std::string directory = is_folder ? where : folder_of_run(wanted);
+  const auto is_wanted = [&](const PartName& name) {
+    return is_folder || (std::filesystem::path(directory) / name.run).string() == wanted;
+  };
+  std::vector<RunPart> parts, without_rows;
   for (const std::filesystem::path& path : list_folder(directory)) {
-    const std::string name = path.filename().string();
-    if (is_part_name(name)) {
-      paths.push_back(path);
-    } else if (name.starts_with("run.") && name.ends_with(".json") && name != "run.json") {
+    const std::string file = path.filename().string();
+    if (const auto timing = part_of_timing(file); timing && is_wanted(*timing)) {
+      parts.push_back(read_part(path, *timing));
+    } else if (const auto record = part_of_record(file); record && is_wanted(*record)) {
       // The record of a part that was ended before its table began is all that tells of its frames.
-      const auto timing = path.parent_path() / ("timing." + name.substr(4, name.size() - 4 - 5) + ".csv");
+      RunPart part;
+      part.run_name = (path.parent_path() / record->run).string();
+      part.timing_path = timing_file_name(part.run_name, record->part, true);
       std::error_code ignored;
-      if (!std::filesystem::exists(timing, ignored)) {
-        without_rows.push_back(path);
+      if (!std::filesystem::exists(part.timing_path, ignored)) {
+        part.record_path = path.string();
+        part.record = read_run_record(part.record_path);
+        without_rows.push_back(std::move(part));
       }
     }
   }
-  if (paths.empty()) {
-    throw Error(ErrorKind::input, directory, "contains no parts of a run (timing.<part>.csv)",
+  if (parts.empty()) {
+    throw Error(ErrorKind::input, where, "contains no parts of a run (NAME.timing.<part>.csv)",
                 "give the folder that the parts were rendered into");
   }
-  std::vector<RunPart> parts;
-  for (const auto& path : paths) {
-    parts.push_back(read_part(path));
-  }
-  for (const auto& path : without_rows) {
-    const std::string name = path.filename().string();
-    RunPart& part = parts.emplace_back();
-    part.record_path = path.string();
-    part.timing_path = (path.parent_path() / ("timing." + name.substr(4, name.size() - 4 - 5) + ".csv")).string();
-    part.record = read_run_record(part.record_path);
-  }
+  std::move(without_rows.begin(), without_rows.end(), std::back_inserter(parts));
+  check_one_sequence(parts);
   check_same_settings(parts);
   return parts;
 }

@@ -16,11 +16,15 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
+std::string file_of_run(const std::string& run_name, const std::string& file) {
+  return run_name.empty() || run_name.ends_with('/') ? run_name + file : run_name + "." + file;
+}
+
 // Common file systems limit names to 255 bytes, so a long list of frames is cut and gets a digest that makes it unique.
-std::string part_file_name(const std::string& directory, const std::string& stem, const std::string& suffix,
+std::string part_file_name(const std::string& run_name, const std::string& stem, const std::string& suffix,
                            const std::string& frames, bool is_part) {
   constexpr std::size_t kMaxFrames = 120;
-  std::string name = stem;
+  std::string name = file_of_run(run_name, stem);
   if (is_part) {
     name += '.';
     if (frames.size() > kMaxFrames) {
@@ -31,21 +35,26 @@ std::string part_file_name(const std::string& directory, const std::string& stem
       name += frames;
     }
   }
-  return (std::filesystem::path(directory) / (name + suffix)).string();
+  return name + suffix;
 }
 
 }  // namespace
 
-std::string timing_file_name(const std::string& directory, const std::string& frames, bool is_part) {
-  return part_file_name(directory, "timing", ".csv", frames, is_part);
+std::string folder_of_run(const std::string& run_name) {
+  const std::string folder = std::filesystem::path(run_name).parent_path().string();
+  return folder.empty() ? "." : folder;
 }
 
-std::string run_record_file_name(const std::string& directory, const std::string& frames, bool is_part) {
-  return part_file_name(directory, "run", ".json", frames, is_part);
+std::string timing_file_name(const std::string& run_name, const std::string& frames, bool is_part) {
+  return part_file_name(run_name, "timing", ".csv", frames, is_part);
 }
 
-std::string traced_file_name(const std::string& directory, std::int32_t frame) {
-  return directory + fmt::format("/traced.{:04}.sparse", frame);
+std::string run_record_file_name(const std::string& run_name, const std::string& frames, bool is_part) {
+  return part_file_name(run_name, "run", ".json", frames, is_part);
+}
+
+std::string traced_file_name(const std::string& run_name, std::int32_t frame) {
+  return file_of_run(run_name, fmt::format("traced.{:04}.sparse", frame));
 }
 
 std::string run_record_json(const RunRecord& record) {

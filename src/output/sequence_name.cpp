@@ -171,6 +171,31 @@ std::string folder_of_frames(const std::string& pattern) {
   return folder.empty() ? "." : folder;
 }
 
+std::string run_name_of(const std::string& pattern) {
+  constexpr std::string_view kBetween = "._- ";
+  std::string before;
+  std::string after;  // the number
+  bool has_number = false;
+  const std::string file = fs::path(pattern).filename().string();
+  for (std::size_t at = 0; at < file.size();) {
+    const bool is_percent = file.compare(at, 2, "%%") == 0;
+    const auto placeholder = is_percent ? std::nullopt : placeholder_at(file, at);
+    if (placeholder) {
+      has_number = true;
+    } else {
+      (has_number ? after : before) += file[at];
+    }
+    at += placeholder ? placeholder->length : is_percent ? 2 : 1;
+  }
+  std::string& end = has_number ? after : before;
+  end.resize(std::min(end.rfind('.'), end.size()));
+  if (has_number) {
+    before.resize(before.find_last_not_of(kBetween) + 1);
+  }
+  const std::size_t begin = before.empty() ? std::min(after.find_first_not_of(kBetween), after.size()) : 0;
+  return (fs::path(folder_of_frames(pattern)) / (before + after.substr(begin))).string();
+}
+
 std::vector<std::int32_t> find_frames(const std::string& pattern) {
   if (!has_frame_number(pattern)) {
     if (std::error_code ignored; !fs::is_regular_file(pattern, ignored)) {

@@ -73,7 +73,7 @@ FinishedFrames::FinishedFrames(const PipelineSettings& settings, const WrittenFi
     return;
   }
   for (const BadFile& file :
-       find_bad_files(settings.output.run_directory, known, settings.settings_digest, settings.threads)) {
+       find_bad_files(folder_of_run(settings.output.run_name), known, settings.settings_digest, settings.threads)) {
     bad_.insert(file.path);
   }
 }
@@ -109,7 +109,7 @@ bool FinishedFrames::is_complete_picture(const std::string& path, std::int32_t f
 
 void FinishedFrames::add_files(std::int32_t frame, WrittenFiles& files) const {
   for (const std::string& path : files_of(frame)) {
-    const std::string name = name_in_record(settings_.output.run_directory, path);
+    const std::string name = name_in_record(folder_of_run(settings_.output.run_name), path);
     const auto known = known_.find(name);
     files[name] = known != known_.end() ? known->second : WrittenFile{frame, fs::file_size(path), digest_file(path)};
   }
@@ -121,13 +121,13 @@ std::vector<std::string> FinishedFrames::files_of(std::int32_t frame) const {
 }
 
 bool FinishedFrames::vouches(const std::string& path, bool (*is_whole)(const std::string&)) const {
-  return settings_.output.trust_files || known_.contains(name_in_record(settings_.output.run_directory, path)) ||
-         is_whole(path);
+  return settings_.output.trust_files ||
+         known_.contains(name_in_record(folder_of_run(settings_.output.run_name), path)) || is_whole(path);
 }
 
 bool FinishedFrames::is_as_written(const std::string& path) const {
-  return !bad_.contains(
-      path_in_record(settings_.output.run_directory, name_in_record(settings_.output.run_directory, path)));
+  return !bad_.contains(path_in_record(folder_of_run(settings_.output.run_name),
+                                       name_in_record(folder_of_run(settings_.output.run_name), path)));
 }
 
 std::vector<std::int32_t> frames_of_others(const FramePlan& plan, const PipelineSettings& settings,

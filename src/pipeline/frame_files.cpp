@@ -57,7 +57,7 @@ void write_frame_files(const FrameRequest& request, const FramePlan& plan, const
   const FrameHeader header = header_of(request, plan, settings, rendered, history);
   const auto list = [&](const std::string& path, WrittenFile file) {
     file.frame = request.frame;
-    result.files.insert_or_assign(name_in_record(output.run_directory, path), std::move(file));
+    result.files.insert_or_assign(name_in_record(folder_of_run(output.run_name), path), std::move(file));
   };
   const auto& aovs = output.exr.aovs;
   const bool wants_eccentricity =
@@ -99,22 +99,6 @@ void write_frame_files(const FrameRequest& request, const FramePlan& plan, const
   }
 }
 
-RunFiles whole_run_files(const OutputSettings& output) {
-  RunFiles files{run_record_file_name(output.run_directory, "", false),
-                 timing_file_name(output.run_directory, "", false)};
-  const std::string& pattern = !output.exr.pattern.empty()       ? output.exr.pattern
-                               : !output.display.pattern.empty() ? output.display.pattern
-                                                                 : output.map_pattern;
-  if (!has_frame_number(pattern)) {
-    const std::string still = std::filesystem::path(pattern).stem().string();
-    for (std::string* file : {&files.record, &files.timing}) {
-      const std::filesystem::path path(*file);
-      *file = (path.parent_path() / (still + "." + path.filename().string())).string();
-    }
-  }
-  return files;
-}
-
 std::vector<std::string> output_files(const PipelineSettings& settings, const std::vector<std::int32_t>& frames) {
   const OutputSettings& output = settings.output;
   std::vector<std::string> files;
@@ -122,17 +106,11 @@ std::vector<std::string> output_files(const PipelineSettings& settings, const st
     return files;
   }
   const std::string list = format_frame_list(frames);
-  if (settings.is_part) {
-    files.push_back(run_record_file_name(output.run_directory, list, true));
-    files.push_back(timing_file_name(output.run_directory, list, true));
-  } else {
-    const RunFiles whole = whole_run_files(output);
-    files.push_back(whole.record);
-    files.push_back(whole.timing);
-  }
+  files.push_back(run_record_file_name(output.run_name, list, settings.is_part));
+  files.push_back(timing_file_name(output.run_name, list, settings.is_part));
   for (const std::int32_t frame : frames) {
     if (settings.stage == SequenceStage::trace) {
-      files.push_back(traced_file_name(output.run_directory, frame));
+      files.push_back(traced_file_name(output.run_name, frame));
       continue;
     }
     for (const std::string& pattern : {output.map_pattern, output.display.pattern, output.exr.pattern}) {

@@ -15,12 +15,4 @@ void write_frame_files(const FrameRequest& request, const FramePlan& plan, const
                        const ColorPipeline& color, const PipelineSettings& settings, const std::string& history,
                        TimingRow& row, SequenceResult& result);
 
-// Where the timing and the record of a whole run are written. Those of a sequence have their folder to themselves and
-// are called timing.csv and run.json; those of a still are named after its picture, so that stills can share a folder:
-// first.timing.csv and first.run.json.
-struct RunFiles {
-  std::string record, timing;
-};
-RunFiles whole_run_files(const OutputSettings& output);
-
 }  // namespace gazetrace

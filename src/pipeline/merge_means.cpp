@@ -35,7 +35,7 @@ bool is_there(const std::string& path) {
 OutputSettings output_of(const std::string& pattern) {
   OutputSettings output;
   output.exr.pattern = pattern;
-  output.run_directory = folder_of_frames(pattern);
+  output.run_name = run_name_of(pattern);
   return output;
 }
 
@@ -121,7 +121,7 @@ void check_frame(const MeanSettings& settings, FrameMean& mean) {
 // The record of the first render that has one which is of its pictures.
 std::optional<RunRecord> record_of(const std::vector<std::string>& renders, std::int32_t frame) {
   for (const std::string& pattern : renders) {
-    const std::string path = whole_run_files(output_of(pattern)).record;
+    const std::string path = run_record_file_name(run_name_of(pattern), "", false);
     if (!is_there(path)) {
       continue;
     }
@@ -150,7 +150,7 @@ void write_record(RunRecord record, const MeanSettings& settings, const MergeRes
   record.facts["mean_of"] = fmt::format("{}", fmt::join(settings.renders, ", "));
   record.warnings.insert(record.warnings.end(), result.warnings.begin(), result.warnings.end());
   record.files = std::move(files);
-  write_text_atomically(whole_run_files(output_of(settings.output)).record, run_record_json(record));
+  write_text_atomically(run_record_file_name(run_name_of(settings.output), "", false), run_record_json(record));
 }
 
 }  // namespace

@@ -259,7 +259,7 @@ OutputLock lock_outputs(const PipelineSettings& settings, const std::vector<std:
   const std::vector<std::string> files = output_files(settings, frames);
   const bool has_pictures = settings.stage != SequenceStage::trace;
   for (std::size_t i = 0; i < files.size() && (i < 2 || !has_pictures); ++i) {
-    claim(output.run_directory, files[i]);
+    claim(folder_of_run(output.run_name), files[i]);
   }
   for (const std::string& pattern : {output.exr.pattern, output.display.pattern, output.map_pattern}) {
     for (std::size_t i = 0; !pattern.empty() && has_pictures && i < frames.size(); ++i) {

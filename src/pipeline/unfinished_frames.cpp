@@ -22,7 +22,7 @@ bool leaves_unfinished(const PipelineSettings& settings) {
 }
 
 std::string unfinished_file_name(const PipelineSettings& settings, std::int32_t frame) {
-  return traced_file_name(settings.output.run_directory, frame);
+  return traced_file_name(settings.output.run_name, frame);
 }
 
 std::string read_unfinished_digest(const PipelineSettings& settings, std::int32_t frame) {
@@ -35,12 +35,12 @@ void save_unfinished(std::int32_t frame, const TracedFrame& traced, const Pipeli
   const std::string path = unfinished_file_name(settings, frame);
   add_prediction(traced.prediction, row);
   WrittenFile file = save_traced(path, frame, traced, settings.settings_digest);
-  files.insert_or_assign(name_in_record(settings.output.run_directory, path), std::move(file));
+  files.insert_or_assign(name_in_record(folder_of_run(settings.output.run_name), path), std::move(file));
   row.write_ms += watch.elapsed_ms();
 }
 
 TracedFrame load_unfinished(const FrameRequest& request, const PipelineSettings& settings) {
-  const std::string path = traced_file_name(settings.output.run_directory, request.frame);
+  const std::string path = traced_file_name(settings.output.run_name, request.frame);
   TracedFrame traced = load_traced(path, request.frame, settings.settings_digest);
   if (traced.map.width_px != request.width_px || traced.map.height_px != request.height_px) {
     throw Error(ErrorKind::input, path, "holds a frame of another size", "trace it again");
@@ -49,15 +49,14 @@ TracedFrame load_unfinished(const FrameRequest& request, const PipelineSettings&
 }
 
 void check_all_traced(const std::vector<std::int32_t>& frames, const PipelineSettings& settings) {
-  const std::string& folder = settings.output.run_directory;
   std::vector<std::int32_t> missing;
   for (const std::int32_t frame : frames) {
-    if (read_traced_digest(traced_file_name(folder, frame)) != settings.settings_digest) {
+    if (read_traced_digest(traced_file_name(settings.output.run_name, frame)) != settings.settings_digest) {
       missing.push_back(frame);
     }
   }
   if (!missing.empty()) {
-    throw Error(ErrorKind::input, folder,
+    throw Error(ErrorKind::input, folder_of_run(settings.output.run_name),
                 fmt::format("{} frames are not traced under these settings: {}", missing.size(),
                             bounded(format_frame_list(missing), 200)),
                 "trace them with `stage` trace");

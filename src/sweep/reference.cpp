@@ -43,12 +43,12 @@ void render_scrambling(PathTracer& tracer, const SweepReference& reference, cons
   settings.is_part = is_part;
   settings.trace.seed = reference.seeds[scrambling];
   settings.output = {};
-  settings.output.run_directory = scrambling_folder(directory, scrambling);
   settings.output.exr.pattern = scrambling_pattern(directory, scrambling);
+  settings.output.run_name = run_name_of(settings.output.exr.pattern);
   settings.output.exr.pixels = ExrPixels::float32;
   settings.output.resume = true;
   settings.settings_digest = scrambling_digest(reference, scrambling);
-  fs::create_directories(settings.output.run_directory);
+  fs::create_directories(scrambling_folder(directory, scrambling));
   render_or_stop(tracer, only_frames(reference.plan, pictures), color, settings, {}, observer);
 }
 

@@ -125,7 +125,7 @@ def measure(frames, size):
             runs = [subprocess.Popen([harness.PROGRAM, "render", "--config", job(name, frames), "--quiet"], cwd=folder) for name in names]
             for one in runs:
                 one.wait()
-            with open(folder / names[0] / "timing.csv", newline="", encoding="utf-8") as file:
+            with open(folder / names[0] / "f.timing.csv", newline="", encoding="utf-8") as file:
                 return [float(row["total_ms"]) / 1000 for row in csv.DictReader(file)]
 
         print("| processes | frames in a chunk | a frame s | spread | a start s | measured s | model s | error |\n"

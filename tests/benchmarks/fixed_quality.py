@@ -186,7 +186,7 @@ class Scene:
 
     def traced(self, name):
         """Samples and processor seconds of tracing, of all rows."""
-        with open(self.folder / name / "timing.csv", newline="", encoding="utf-8") as file:
+        with open(self.folder / name / "f.timing.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         return (sum(int(row["samples"]) for row in rows), sum(float(row["trace_cpu_ms"]) for row in rows) / 1000,
                 sum(int(row["pilot_samples"]) for row in rows))

@@ -39,7 +39,7 @@ def render(program, scene, extra, folder, outputs):
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{' '.join(command)}\n{done.stderr}")
-    with open(next(folder.glob("timing*.csv")), newline="") as file:
+    with open(next(folder.glob("*timing*.csv")), newline="") as file:
         row = list(csv.DictReader(file))[-1]
     return {key: float(value) for key, value in row.items() if not key.startswith("gaze_")}
 

@@ -44,7 +44,7 @@ SWEEP = SWEEP_TOML.replace("repeats = 1", 'repeats = 1\nbaselines = ["uniform-re
 class Way:
     """How a sequence is rendered: steps in order, each of which can be done again, and what is added to the job."""
 
-    sides = ("run*.json", "timing*.csv", "run*.files", "history", "chunks*.json")  # files beside the pictures
+    sides = ("f.run*.json", "f.timing*.csv", "f.run*.files", "history", "chunks*.json")  # files beside the pictures
 
     def __init__(self, name, more, steps):
         self.name, self.more, self.steps = name, more, steps
@@ -55,7 +55,7 @@ class Way:
     def listed(self, out):
         """Files that a record or a journal vouches for: what else is damaged cannot be known."""
         names = set()
-        for path in out.glob("run*"):
+        for path in out.glob("f.run*"):
             try:
                 if path.suffix == ".json":
                     names.update(json.loads(path.read_text()).get("files", {}))
@@ -67,7 +67,7 @@ class Way:
 
     def table(self, out):
         """What a table must say besides the pictures."""
-        return len((out / "timing.csv").read_text().splitlines())
+        return len((out / "f.timing.csv").read_text().splitlines())
 
 
 class SweepWay(Way):

@@ -127,9 +127,9 @@ def judge(bench, name, scene, gaze, falloff, filter_name, target):
     folder = bench.out / name / f"jod-{gaze.replace(',', '_')}-{falloff}-{filter_name}-{target}"
     bench.render(folder, scene, gaze, "--frames", f"1-{asked.frames}", "--falloff", falloff, "--filter", filter_name,
                  "--target-jod", target, "--seed", str(asked.seed), *shlex.split(asked.options), *bench.view())
-    with open(folder / "timing.csv", newline="") as file:
+    with open(folder / "f.timing.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    rate = json.loads((folder / "run.json").read_text())["facts"]["rate"]
+    rate = json.loads((folder / "f.run.json").read_text())["facts"]["rate"]
     predicted = float(re.search(r"expected to reach ([\d.e-]+)", rate)[1])
     whole = sum(float(row["total_ms"]) for row in rows)
     pilot = sum(float(row["pilot_ms"]) for row in rows)

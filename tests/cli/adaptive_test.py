@@ -13,13 +13,12 @@ VIEW = ["--size", "64x40", "--eye", "0,0,3", "--target", "0,0,0", "--quiet", "--
 
 
 class Adaptive(harness.CliTest):
-    def rows(self, folder, still=""):
-        """Of a sequence; of the still f.exr with `still` = "f."."""
-        with open(self.folder / folder / f"{still}timing.csv", newline="") as file:
+    def rows(self, folder):
+        with open(self.folder / folder / "f.timing.csv", newline="") as file:
             return list(csv.DictReader(file))
 
-    def record(self, folder, still=""):
-        return json.loads((self.folder / folder / f"{still}run.json").read_text())
+    def record(self, folder):
+        return json.loads((self.folder / folder / "f.run.json").read_text())
 
     def render(self, folder, *more):
         self.run_ok("render", "box.gltf", *VIEW, *more, "-o", f"{folder}/f.####.exr")
@@ -49,7 +48,7 @@ class Adaptive(harness.CliTest):
         for budget in ("1", "4", "16"):
             self.run_ok("render", "box.gltf", *VIEW[2:], "--size", "320x256", "--budget-spp", budget, "--filter", "none", "-o",
                         f"error-{budget}/f.exr")
-            errors.append(float(self.rows(f"error-{budget}", "f.")[0]["predicted_relmse"]))
+            errors.append(float(self.rows(f"error-{budget}")[0]["predicted_relmse"]))
         for more, fewer in zip(errors[1:], errors):
             self.assertLess(more, 0.6 * fewer)
 
@@ -141,15 +140,15 @@ class Adaptive(harness.CliTest):
 
     def test_a_stated_quality_keeps_the_least_rate(self):
         self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, "--target-jod", "3", "--min-spp", "3", "-o", "least/f.exr")
-        row, = self.rows("least", "f.")
+        row, = self.rows("least")
         self.assertEqual(int(row["samples"]) - int(row["pilot_samples"]), 3 * 64 * 40)
-        record = self.record("least", "f.")
+        record = self.record("least")
         self.assertIn("the least there is", record["facts"]["rate"])
         self.assertFalse([warning for warning in record["warnings"] if "min-spp" in warning])
 
     def test_the_record_says_what_was_decided(self):
         self.run_ok("render", "box.gltf", *VIEW[:-2], "--spp", "2", "-o", "spp/f.exr")
-        self.assertIn("2 samples everywhere", self.record("spp", "f.")["facts"]["sampling"])
+        self.assertIn("2 samples everywhere", self.record("spp")["facts"]["sampling"])
         for limit, is_told in ((None, True), ("4", False)):
             folder = f"blocks-{limit}"
             more = ["--max-block", limit] if limit else []
@@ -225,11 +224,11 @@ class Adaptive(harness.CliTest):
             self.assertIn("falloff: visible, since a quality is stated", told)
             self.run_ok("render", "box.gltf", *view, *quality, "--falloff", "visible", "-o", "named/f.exr", "--overwrite")
             self.assertEqual(self.pictures("open"), self.pictures("named"), quality)
-            self.assertIn('falloff = "visible"', self.record("open", "f.")["config_toml"])
+            self.assertIn('falloff = "visible"', self.record("open")["config_toml"])
         # What is named stays.
         told = self.run_ok("render", "box.gltf", *view, "--falloff", "cortical", "--target-jod", "8", "-o", "cortical/f.exr").stderr
         self.assertNotIn("since a quality", told)
-        self.assertIn('falloff = "cortical"', self.record("cortical", "f.")["config_toml"])
+        self.assertIn('falloff = "cortical"', self.record("cortical")["config_toml"])
 
     def test_a_view_at_rest_is_told_what_it_could_share(self):
         view = [*VIEW[:-3], *GAZE, "--target-jod", "7", "--frames", "1-2"]

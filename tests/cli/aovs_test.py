@@ -136,7 +136,7 @@ class Aovs(harness.CliTest):
         frames = self.render("out", "--gaze", "log.csv", "--gaze-missing", "uniform", "--gaze-max-age", "20ms",
                              "--screen-px", "64,36", "--screen-cm", "64,36", "--screen-distance-cm", "60", "--spp", "1",
                              frames="1-8")
-        with open(self.folder / "out/timing.csv", newline="") as file:
+        with open(self.folder / "out/f.timing.csv", newline="") as file:
             table = list(csv.DictReader(file))
         self.assertEqual(len(table), 8)
         valid = []

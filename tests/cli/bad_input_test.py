@@ -227,11 +227,11 @@ class BadOutputs(harness.CliTest):
     def test_going_on_with_another_run(self):
         arguments = ["render", "box.gltf", "--size", "16x9", "--spp", "1", "-o", "f.####.exr"]
         self.run_ok(*arguments, "--frames", "1-3")
-        self.assert_refused([*arguments, "--frames", "4-6", "--resume"], ["run.json", "1-3", "another folder"])
+        self.assert_refused([*arguments, "--frames", "4-6", "--resume"], ["f.run.json", "1-3", "another folder"])
         self.run_ok(*arguments, "--frames", "1-5", "--resume")
-        self.write("timing.csv", "garbage\n")
-        self.assertIn("timing.csv", self.run_ok(*arguments, "--frames", "1-5", "--resume").stderr)  # made anew
-        self.assertIn('"done"', (self.folder / "run.json").read_text())
+        self.write("f.timing.csv", "garbage\n")
+        self.assertIn("f.timing.csv", self.run_ok(*arguments, "--frames", "1-5", "--resume").stderr)  # made anew
+        self.assertIn('"done"', (self.folder / "f.run.json").read_text())
 
     def test_converting_into_what_cannot_be_a_folder(self):
         self.write("log.csv", harness.moving_gaze())

@@ -71,7 +71,7 @@ class CameraPaths(harness.CliTest):
             self.write("cameras.txt", f"7 PINHOLE 1920 1080 {focal} {focal} 960 540\n")
             self.run_ok("render", "box.gltf", "--camera-path", "images.txt", "--size", "16x9", "--spp", "1", "--frames", "1",
                         "-o", f"{i}/f.####.exr", "--quiet")
-            inputs = json.loads((self.folder / f"{i}/run.json").read_text())["input_digests"]
+            inputs = json.loads((self.folder / f"{i}/f.run.json").read_text())["input_digests"]
             digests.append({Path(name).name: digest for name, digest in inputs.items()})
         self.assertEqual(digests[0]["images.txt"], digests[1]["images.txt"])
         self.assertNotEqual(digests[0]["cameras.txt"], digests[1]["cameras.txt"])

@@ -69,7 +69,7 @@ class CompareParts(harness.CliTest):
         self.render("parts", "--frames", "1-2", "--chunk", "1/1", *history, "--checkpoint", "history.bin")
         self.render("parts", "--frames", "3-4", "--chunk", "1/1", *history, "--resume-from", "history.bin")
         self.run_ok("merge", "parts")
-        record = json.loads((self.folder / "parts/run.json").read_text())
+        record = json.loads((self.folder / "parts/p.run.json").read_text())
         self.assertEqual(record["part_digests"], [], "parts of one job have one digest")
         self.assert_compared_as_one("whole", "parts")
 

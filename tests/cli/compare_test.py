@@ -72,7 +72,7 @@ class Compare(harness.CliTest):
         # Screen, gaze and frame rate came with the run.
         self.assertIn("64x36 px", result["conditions"]["screen"])
         self.assertEqual(result["conditions"]["frame rate"], "24")
-        with open(self.folder / "ref/timing.csv", newline="") as file:
+        with open(self.folder / "ref/p.timing.csv", newline="") as file:
             events = [row["gaze_event"] for row in csv.DictReader(file)]
         self.assertNotIn("none", events)
         # This gaze glides too fast for a fixation.

@@ -79,7 +79,7 @@ class RoundTrip(harness.CliTest):
         self.write("job.toml", self.print_config("box.gltf", "-o", "out/f.####.exr", "--size", "32x18", "--spp", "2",
                                                  "--frames", "1-2", "--quiet"))
         self.run_ok("--config", "job.toml", "render")
-        self.assertEqual(self.files("out"), ["f.0001.exr", "f.0002.exr", "run.json", "timing.csv"])
+        self.assertEqual(self.files("out"), ["f.0001.exr", "f.0002.exr", "f.run.json", "f.timing.csv"])
         self.run_ok("plan", "--config", "job.toml")
 
 
@@ -98,7 +98,7 @@ class Refused(harness.CliTest):
             said = self.run_ok("render", "--config", config, "--overwrite").stderr
             self.assertNotIn("warning: jobs/job.toml", said)
         self.assertIn("out/f.0001.exr", self.files())  # what is written lies where the program was started
-        record = json.loads((self.folder / "out/run.json").read_text())
+        record = json.loads((self.folder / "out/f.run.json").read_text())
         self.assertIn('scene = "jobs/scenes/room.gltf"', record["config_toml"])
         self.assertNotIn(str(self.folder), record["config_toml"])
         # A record has the paths of its run, wherever it lies.

@@ -36,7 +36,7 @@ class DensityMap(harness.CliTest):
 
     def render(self, out, *more):
         self.run_ok("render", "box.gltf", *VIEW, "--falloff", "map", *more, "-o", f"{out}/f.####.exr")
-        with open(self.folder / out / "timing.csv", newline="") as file:
+        with open(self.folder / out / "f.timing.csv", newline="") as file:
             return [int(row["samples"]) for row in csv.DictReader(file)]
 
     def test_rates_of_one_picture_and_of_a_budget(self):
@@ -68,7 +68,7 @@ class DensityMap(harness.CliTest):
                         "-o", "parts/f.####.exr")
         self.run_ok("merge", "parts")
         self.assertEqual(self.pictures("all"), self.pictures("parts"))
-        record = json.loads((self.folder / "all" / "run.json").read_text())
+        record = json.loads((self.folder / "all" / "f.run.json").read_text())
         self.assertIn("d.0002.exr", record["input_digests"])
         # Another content is another run.
         before = (self.folder / "all/f.0002.exr").read_bytes()

@@ -44,9 +44,9 @@ class DamagedFarm(Farm):
                 farm = ("farm", "job.toml", "--chunks", "3", "--processes", "2", "--threads", "1", "--then", "echo made >> film.txt")
                 self.run_ok(*farm)
                 whole = self.pictures("out")
-                table = (self.folder / "out/timing.csv").read_text().splitlines()
+                table = (self.folder / "out/f.timing.csv").read_text().splitlines()
                 for name, harm, is_seen_by_size in (("f.0003.exr", cut, True), ("f.0005.png", remove, True), ("f.0004.exr", flip, False),
-                                                    ("timing.csv", cut, True), ("run.json", remove, True)):
+                                                    ("f.timing.csv", cut, True), ("f.run.json", remove, True)):
                     with self.subTest(name):
                         harm(self.folder / "out" / name)
                         self.assertEqual(set(self.states()) != {"done"}, is_seen_by_size)
@@ -55,7 +55,7 @@ class DamagedFarm(Farm):
                         self.run_ok(*again)
                         self.assertEqual((self.folder / "film.txt").read_text(), "made\n")
                         self.assertEqual(self.pictures("out"), whole)
-                        rows = (self.folder / "out/timing.csv").read_text().splitlines()
+                        rows = (self.folder / "out/f.timing.csv").read_text().splitlines()
                         self.assertEqual([row.split(",")[0] for row in rows], [row.split(",")[0] for row in table])
                         self.assertEqual(set(self.states()), {"done"})
 

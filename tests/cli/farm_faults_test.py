@@ -65,7 +65,7 @@ class MergeLooksAtFiles(Farm):
                       "f.0005.exr: holds frame 6", "f.0006.png: has another content", "5 files are not what was written",
                       "frames 1-3,5-6"):
             self.assertIn(words, merged.stderr)
-        self.assertFalse((out / "run.json").exists())
+        self.assertFalse((out / "f.run.json").exists())
         # What is there is joined without them where that is asked for.
         partly = self.run_ok("merge", "out", "--allow-missing")
         self.assertIn("2 parts joined, frames 4\n", partly.stdout)
@@ -75,7 +75,7 @@ class MergeLooksAtFiles(Farm):
         made = {name for name, stamp in self.times("out").items() if before.get(name) != stamp}
         self.assertEqual(made, {f"f.{frame:04d}.{suffix}" for frame in (1, 2, 3, 5, 6) for suffix in ("exr", "png")})
         self.assertIn("2 parts joined, frames 1-6", self.run_ok("merge", "out", "--overwrite").stdout)
-        self.assertEqual(len(self.record("out/run.json")["files"]), 12)
+        self.assertEqual(len(self.record("out/f.run.json")["files"]), 12)
 
     def test_files_can_be_trusted(self):
         self.parts("out")
@@ -85,7 +85,7 @@ class MergeLooksAtFiles(Farm):
 
     def test_a_part_that_ended_before_its_table_began_is_missing(self):
         self.parts("out")
-        (self.folder / "out/timing.4-6.csv").unlink()
+        (self.folder / "out/f.timing.4-6.csv").unlink()
         self.assert_refused(["merge", "out"], ["frames are missing: 4-6"])
 
     def test_parts_of_different_outputs_are_no_sequence(self):
@@ -93,7 +93,7 @@ class MergeLooksAtFiles(Farm):
         self.run_ok("render", *JOB, "-o", "out/f.####.exr", "--frames", "3-4", "--chunk", "1/1")
         refused = self.run_program("merge", "out")
         self.assertEqual(refused.returncode, 2)
-        self.assertIn("run.3-4.json: lists no 'f.0003.png', and frame 1 has a file like that", refused.stderr)
+        self.assertIn("f.run.3-4.json: lists no 'f.0003.png', and frame 1 has a file like that", refused.stderr)
         # Numbers that are not the frame's do not matter.
         for folder, name in (("two", "f2.####.exr"), ("one", "f.####.v001.exr"), ("both", "p2.####_s2.png"), ("each", "%04d/f1.%04d.exr")):
             for frames in ("1-2", "3-4"):
@@ -116,18 +116,18 @@ class MergeLooksAtFiles(Farm):
 
     def test_a_killed_part_knows_its_files(self):
         self.render("out", "--frames", "1-3", "--chunk", "1/1")
-        record = self.record("out/run.1-3.json")
+        record = self.record("out/f.run.1-3.json")
         lines = [f'{file["frame"]} {file["bytes"]} {file["digest"]} {name}\n' for name, file in record["files"].items()]
         record["files"] = {}
-        self.write("out/run.1-3.json", json.dumps(record))
-        self.write("out/run.1-3.files", "".join(lines) + "2 17 cut")
+        self.write("out/f.run.1-3.json", json.dumps(record))
+        self.write("out/f.run.1-3.files", "".join(lines) + "2 17 cut")
         (self.folder / "out/f.0002.exr").write_bytes(b"")
         self.assertIn("f.0002.exr: has 0 bytes in place of", self.run_program("merge", "out").stderr)
         before = self.times("out")
         self.render("out", "--frames", "1-3", "--chunk", "1/1", "--resume")
         made = {name for name, stamp in self.times("out").items() if before[name] != stamp}
         self.assertEqual(made, {"f.0002.exr", "f.0002.png"})
-        self.assertFalse((self.folder / "out/run.1-3.files").exists())
+        self.assertFalse((self.folder / "out/f.run.1-3.files").exists())
         self.run_ok("merge", "out")
 
 
@@ -139,7 +139,7 @@ class ResumeLosesNothing(Farm):
         scene["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 0.9
         self.write("glide.gltf", json.dumps(scene))
         again = ["render", *JOB, *outputs("out"), "--frames", "1-4", "--resume"]
-        self.assert_refused(again, ["run.json", "4 finished frames, 1-4", "glide.gltf has changed", "--overwrite"])
+        self.assert_refused(again, ["f.run.json", "4 finished frames, 1-4", "glide.gltf has changed", "--overwrite"])
         self.assertEqual(self.times("out"), before)
         (self.folder / "out/f.0001.exr").unlink()
         (self.folder / "out/f.0001.png").unlink()
@@ -153,7 +153,7 @@ class ResumeLosesNothing(Farm):
         self.assert_refused([*again, "--seed", "4"], ["2 finished frames", "--seed was 3 and is 4"])
         self.run_ok(*again, "--seed", "3")
         # Without a record the pictures alone say that they are others.
-        (self.folder / "out/run.json").unlink()
+        (self.folder / "out/f.run.json").unlink()
         self.assert_refused([*again, "--seed", "4"], ["2 finished frames", "no record"])
 
     def test_another_history_is_another_picture(self):
@@ -174,7 +174,7 @@ class DigestsOfParts(Farm):
         self.render("parts", "--frames", "4-6", "--chunk", "1/1", *history, "--resume-from", "h")
         self.assertEqual(self.pictures("parts"), self.pictures("whole"))
         self.run_ok("merge", "parts")
-        whole, parts = self.record("whole/run.json"), self.record("parts/run.json")
+        whole, parts = self.record("whole/f.run.json"), self.record("parts/f.run.json")
         self.assertEqual(parts["settings_digest"], whole["settings_digest"])
         self.assertEqual(parts["files"], whole["files"])
         self.assertEqual(parts["part_digests"], [])
@@ -183,18 +183,18 @@ class DigestsOfParts(Farm):
 class DamagedSideFiles(Farm):
     def test_a_resumed_run_makes_them_anew(self):
         self.render("out", "--frames", "1-3")
-        before, record = self.times("out"), (self.folder / "out/run.json").read_bytes()
-        good = self.rows("out/timing.csv")
-        for name, content in (("timing.csv", b""), ("timing.csv", b"frame,plan"), ("timing.csv", b"a,b\n1,2\n"),
-                              ("run.json", record[:len(record) // 2]), ("run.json", b"")):
+        before, record = self.times("out"), (self.folder / "out/f.run.json").read_bytes()
+        good = self.rows("out/f.timing.csv")
+        for name, content in (("f.timing.csv", b""), ("f.timing.csv", b"frame,plan"), ("f.timing.csv", b"a,b\n1,2\n"),
+                              ("f.run.json", record[:len(record) // 2]), ("f.run.json", b"")):
             with self.subTest(name=name, content=content[:20]):
                 self.write(f"out/{name}", content)
                 result = self.render("out", "--frames", "1-3", "--resume")
                 self.assertEqual(self.times("out"), before)
-                rows = self.rows("out/timing.csv")
+                rows = self.rows("out/f.timing.csv")
                 self.assertEqual(list(rows), [1, 2, 3])
                 self.assertEqual([row["exposure_ev"] for row in rows.values()], [row["exposure_ev"] for row in good.values()])
-                self.assertEqual(len(self.record("out/run.json")["files"]), 6)
+                self.assertEqual(len(self.record("out/f.run.json")["files"]), 6)
                 self.assertTrue(all(len(line) < 700 for line in result.stderr.splitlines()), result.stderr)
 
     def test_pictures_of_a_lost_record_tell_their_own_damage(self):
@@ -206,7 +206,7 @@ class DamagedSideFiles(Farm):
             content = bytearray(path.read_bytes())
             content[len(content) * 3 // 4] ^= 16
             path.write_bytes(content)
-        (self.folder / "out/run.1-4.json").write_bytes((self.folder / "out/run.1-4.json").read_bytes()[:500])
+        (self.folder / "out/f.run.1-4.json").write_bytes((self.folder / "out/f.run.1-4.json").read_bytes()[:500])
         times = self.times("out")
         self.render("out", "--frames", "1-4", "--chunk", "1/1", "--resume")
         self.assertEqual(self.pictures("out"), whole)
@@ -216,9 +216,9 @@ class DamagedSideFiles(Farm):
 
     def test_a_cut_record_of_a_part_is_one_short_line(self):
         self.parts("out")
-        record = (self.folder / "out/run.1-3.json").read_bytes()
-        self.write("out/run.1-3.json", record[:len(record) // 2])
-        self.assertLess(len(self.assert_refused(["merge", "out"], ["run.1-3.json", "--resume"])), 700)
+        record = (self.folder / "out/f.run.1-3.json").read_bytes()
+        self.write("out/f.run.1-3.json", record[:len(record) // 2])
+        self.assertLess(len(self.assert_refused(["merge", "out"], ["f.run.1-3.json", "--resume"])), 700)
         self.render("out", "--frames", "1-3", "--chunk", "1/1", "--resume")
         self.run_ok("merge", "out")
 
@@ -263,12 +263,12 @@ class Chunks(Farm):
             self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-7", "--chunk", f"{number}/3")
         [written] = (self.folder / "out").glob("chunks.3.*.json")
         borders = json.loads(written.read_text())
-        self.assertEqual([name for name in self.files("out") if name.startswith("run.")],
-                         sorted(f"run.{frames}.json" for frames in borders["chunks"]))
+        self.assertEqual([name for name in self.files("out") if name.startswith("f.run.")],
+                         sorted(f"f.run.{frames}.json" for frames in borders["chunks"]))
         self.assertIn("frames 1-7", self.run_ok("merge", "out").stdout)
         self.assertEqual(self.pictures("out"), self.pictures("whole"))
         told = json.loads(self.run_ok("plan", *JOB, "--frames", "1-7", "--chunks", "3", "--json",
-                                      "--rate-from", "whole/timing.csv").stdout)
+                                      "--rate-from", "whole/f.timing.csv").stdout)
         self.assertEqual([chunk["frames"] for chunk in told], borders["chunks"])
         self.assertEqual([chunk["samples"] for chunk in told], borders["samples"])
         self.assertTrue(all(chunk["minutes"] > 0 for chunk in told))
@@ -280,7 +280,7 @@ class Chunks(Farm):
         borders["chunks"] = ["1-4", "5-6"]
         written.write_text(json.dumps(borders))
         self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-6", "--chunk", "2/2")
-        self.assertIn("run.5-6.json", self.files("out"))
+        self.assertIn("f.run.5-6.json", self.files("out"))
 
     def test_more_chunks_than_frames(self):
         for number in range(1, 4):
@@ -340,11 +340,11 @@ class Signals(Running):
             ready = self.folder / f"out/f.{2 + 3 * count:04d}.exr"
             line = self.interrupt(ready.exists, number, *self.LONG, *history, *(["--resume"] if count else []))
             self.assertIn(f"signal {number.name[3:]}", line)
-            record = self.record("out/run.json")
+            record = self.record("out/f.run.json")
             done = len(list((self.folder / "out").glob("f.*.exr")))
             self.assertEqual(record["facts"]["state"], "interrupted")
             self.assertEqual(len(record["files"]), 2 * done)
-            self.assertEqual(list(self.rows("out/timing.csv")), list(range(1, done + 1)))
+            self.assertEqual(list(self.rows("out/f.timing.csv")), list(range(1, done + 1)))
             self.assertEqual(sorted(name for name in self.files("out") if name.endswith((".lock", ".files"))), [])
         result = self.run_ok("render", *JOB, *outputs("out"), *self.LONG, *history, "--resume", "--json")
         summary = json.loads(result.stdout)
@@ -355,7 +355,7 @@ class Signals(Running):
 
     def test_a_frame_that_the_grace_time_does_not_allow_is_given_up(self):
         slow = [*self.SLOW, "--grace", "0s"]
-        line = self.interrupt((self.folder / "out/run.json").exists, signal.SIGTERM, *slow)
+        line = self.interrupt((self.folder / "out/f.run.json").exists, signal.SIGTERM, *slow)
         self.assertIn("0 of 4 frames are done, 1-4 left", line)
         self.assertEqual([name for name in self.files("out") if name.startswith("f.")], [])
 
@@ -363,13 +363,13 @@ class Signals(Running):
         result = self.run_program("render", *JOB, *outputs("out"), *self.SLOW, "--max-time", "1s", "--grace", "0.5s")
         self.assertEqual(result.returncode, 4, result.stderr)
         self.assertIn("interrupted by --max-time", result.stderr)
-        self.assertEqual(self.record("out/run.json")["facts"]["state"], "interrupted")
+        self.assertEqual(self.record("out/f.run.json")["facts"]["state"], "interrupted")
 
     def test_a_second_interrupt_ends_at_once(self):
         # A frame must outlast that second and both interrupts on any machine.
         slowest = [option.replace("400", "9000") for option in self.SLOW]
         process = self.start(*slowest, "--grace", "10min")
-        self.wait_for((self.folder / "out/run.json").exists, process)
+        self.wait_for((self.folder / "out/f.run.json").exists, process)
         # An interrupt before the first frame ends the run in good order, with nothing to wait for. This run is of tiny inputs, so that
         # a second of processor time after its record can only be spent in that frame.
         began = self.processor_seconds(process)

@@ -58,7 +58,7 @@ class Plans(FarmFiles):
         before = self.files("out")
         refused = self.farm("--chunks", "2", "--processes", "2", program=self.run_program)
         self.assertEqual(refused.returncode, 2)
-        self.assertIn("holds parts of another division, in 3 chunks, such as run.1-2.json", refused.stderr)
+        self.assertIn("holds parts of another division, in 3 chunks, such as f.run.1-2.json", refused.stderr)
         self.assertEqual(self.files("out"), before)
 
     def test_a_folder_that_was_moved(self):

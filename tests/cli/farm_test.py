@@ -42,7 +42,7 @@ class TracedFirst(Farm):
         self.finish("out")
         self.assertEqual(self.pictures("out"), whole)
         # The table of the whole counts what tracing took, wherever that was.
-        one, two = self.rows("whole/timing.csv"), self.rows("out/timing.csv")
+        one, two = self.rows("whole/f.timing.csv"), self.rows("out/f.timing.csv")
         self.assertEqual([row["samples"] for row in one.values()], [row["samples"] for row in two.values()])
         self.assertTrue(all(float(row["trace_ms"]) > 0 for row in two.values()))
 
@@ -74,21 +74,21 @@ class TracedFirst(Farm):
         self.assertIn("3 frames are not traced under these settings: 4-6",
                       self.finish("out", program=self.run_program).stderr)
         self.trace("out", "--chunk", "2/2")
-        shutil.copyfile(self.folder / "out/traced.0005.sparse", self.folder / "out/traced.0006.sparse")
-        self.assertIn("traced.0006.sparse: holds frame 5", self.finish("out", "--resume", program=self.run_program).stderr)
+        shutil.copyfile(self.folder / "out/f.traced.0005.sparse", self.folder / "out/f.traced.0006.sparse")
+        self.assertIn("f.traced.0006.sparse: holds frame 5", self.finish("out", "--resume", program=self.run_program).stderr)
         # Cut within the line that says under which settings it was made, and that line changed: damaged, not another's.
-        first = self.folder / "out/traced.0001.sparse"
+        first = self.folder / "out/f.traced.0001.sparse"
         content = first.read_bytes()
         line = content.index(b"\n")
         for broken in (content[:line - 5], content[:line - 1] + bytes([content[line - 1] ^ 1]) + content[line:]):
             first.write_bytes(broken)
             self.trace("out", "--chunk", "1/2", "--resume")
             self.assertEqual(first.read_bytes()[:line], content[:line])
-        damaged = self.folder / "out/traced.0002.sparse"
+        damaged = self.folder / "out/f.traced.0002.sparse"
         damaged.write_bytes(damaged.read_bytes()[:-5])
         again = self.finish("out", "--resume", program=self.run_program)
         self.assertEqual(again.returncode, 2)
-        self.assertIn("traced.0002.sparse: the file of a traced frame is damaged", again.stderr)
+        self.assertIn("f.traced.0002.sparse: the file of a traced frame is damaged", again.stderr)
         for number in (1, 2):
             self.trace("out", "--chunk", f"{number}/2", "--resume")
         self.finish("out", "--resume")
@@ -233,7 +233,7 @@ class Engines(FarmFiles):
                 self.farm(*local, "--then", "echo made >> film.txt", job=job)
                 (self.folder / "film.txt").unlink()
                 (self.folder / "out/f.0003.exr").unlink()
-                for traced in (self.folder / "out").glob("traced.0003.*"):
+                for traced in (self.folder / "out").glob("f.traced.0003.*"):
                     traced.unlink()
                 self.run_ok("farm", "retry", "out")
                 self.assertEqual((self.folder / "film.txt").read_text(), "made\n")

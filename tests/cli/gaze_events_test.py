@@ -213,12 +213,12 @@ class GazeTools(harness.CliTest):
         self.assertNotEqual(plan["frames"][0]["gaze_render"]["u"], plan["frames"][0]["gaze_true"]["u"])
         self.run_ok("render", "box.gltf", "--gaze", "log.csv", "--size", "32x18", "--region-samples", "1,1,1", "--frames", "1-2",
                     "--gaze-process", "snap-to-landing", "-o", "out/f.####.exr", "--quiet")
-        record = json.loads((self.folder / "out/run.json").read_text())
+        record = json.loads((self.folder / "out/f.run.json").read_text())
         self.assertIn("(oracle)", record["facts"]["gaze processing"])
         # 500 Hz: a sample is at most 2 ms old; half of a frame at 24 fps is 20.8 ms.
         self.assertRegex(record["facts"]["effective gaze age"], r"^[01]\.\d ms in the median, .*over 2 frames; 20\.8 ms less")
         self.assertIn("snap-to-landing", record["config_toml"])
-        with open(self.folder / "out/timing.csv") as file:
+        with open(self.folder / "out/f.timing.csv") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual(rows[0]["gaze_event"], "fixation")
         self.assertEqual(rows[0]["no_gaze"], "0")

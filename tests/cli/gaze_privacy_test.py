@@ -33,7 +33,7 @@ class Privacy(harness.CliTest):
         self.run_ok("render", "box.gltf", *gaze, "--env", "constant:1,1,1", "-o", "out/f.####.exr", "--spp", "1", "--overwrite", *more)
         for name in self.files("out"):
             said[name] = (self.folder / "out" / name).read_bytes().decode("latin-1")
-        self.assertTrue({"f.0001.exr", "run.json", "timing.csv"} <= set(said))
+        self.assertTrue({"f.0001.exr", "f.run.json", "f.timing.csv"} <= set(said))
         return said
 
     def test_nothing_identifies_the_wearer(self):

@@ -86,7 +86,7 @@ class Histories(harness.CliTest):
         for frame in range(1, 6):
             name = f"f.{frame:04d}.png"
             self.assertEqual(png_pixels(self.folder / "parts" / name), png_pixels(self.folder / "whole" / name))
-        whole, parts = self.record("whole/run.json"), self.record("parts/run.json")
+        whole, parts = self.record("whole/f.run.json"), self.record("parts/f.run.json")
         for key in ("settings_digest", "frames", "is_part", "history", "input_digests"):
             self.assertEqual(parts[key], whole[key], key)
         self.assertEqual(parts["part_digests"], [])
@@ -95,24 +95,24 @@ class Histories(harness.CliTest):
         self.part("parts", "1-3", "--checkpoint", "after3.bin")
         alone = self.part("parts", "4")
         self.assertIn("--chunk: frame 4 begins without the history of those before it", alone.stderr)
-        self.assert_refused(["merge", "parts"], ["timing.4.csv", "frame 4 was made without history",
+        self.assert_refused(["merge", "parts"], ["f.timing.4.csv", "frame 4 was made without history",
                                                  "in one run it would have been with the history of frames 1-3",
                                                  "--resume-from and a checkpoint made after frame 3"])
         # The checkpoint of a part that lacks a frame.
         self.part("short", "1-2", "--checkpoint", "after2.bin")
         gap = self.part("parts", "4", "--resume-from", "after2.bin", "--overwrite")
         self.assertIn("those between are missing", gap.stderr)
-        self.assert_refused(["merge", "parts"], ["timing.4.csv", "made with the history of frames 1-2"])
+        self.assert_refused(["merge", "parts"], ["f.timing.4.csv", "made with the history of frames 1-2"])
         # Rendered anew: joined, and the seam is said.
         prerolled = self.part("parts", "4", "--preroll", "2", "--overwrite")
         self.assertEqual(prerolled.stderr, "")
         merged = self.run_ok("merge", "parts")
-        self.assertIn("timing.4.csv: frame 4 was made with the history of frames 2-3", merged.stderr)
+        self.assertIn("f.timing.4.csv: frame 4 was made with the history of frames 2-3", merged.stderr)
         self.part("parts", "4", "--resume-from", "after3.bin", "--overwrite")
         self.assertEqual(self.run_ok("merge", "parts", "--overwrite").stderr, "")
         # Other settings stay other settings.
         self.part("parts", "5", "--preroll", "4", "--bounces", "2")
-        self.assert_refused(["merge", "parts", "--overwrite"], ["timing.5.csv", "other settings"])
+        self.assert_refused(["merge", "parts", "--overwrite"], ["f.timing.5.csv", "other settings"])
 
     def test_resume_writes_the_checkpoint_that_is_asked_for(self):
         def run(*more):
@@ -182,7 +182,7 @@ class Histories(harness.CliTest):
         self.render("out", *SMALL, "--frames", "1-3", "--chunk", "1/1", "--checkpoint", "history.bin")
         second = [*SMALL, "--frames", "4-6", "--chunk", "1/1", "--resume-from", "history.bin"]
         whole = self.render("out", *second)
-        table = self.folder / "out/timing.4-6.csv"
+        table = self.folder / "out/f.timing.4-6.csv"
         lines = table.read_text().splitlines()
         table.write_text("\n".join(lines[:-1]) + "\n")
         self.assertEqual(self.render("out", *second, "--resume"), whole)

@@ -33,7 +33,7 @@ class LearnedLight(harness.CliTest):
         return self.pictures(folder)
 
     def rows(self, folder):
-        with open(self.folder / folder / "timing.csv", newline="", encoding="utf-8") as file:
+        with open(self.folder / folder / "f.timing.csv", newline="", encoding="utf-8") as file:
             return list(csv.DictReader(file))
 
     def test_the_same_bits_however_it_is_rendered(self):

@@ -115,13 +115,13 @@ class MergeMean(harness.CliTest):
     def test_a_mean_has_the_record_of_its_renders(self):
         renders = [self.render(f"s{seed}", seed, *FOVEATED, "--aov", "samples", frames="9") for seed in (1, 2)]
         self.merge("mean", renders)
-        record = json.loads((self.folder / "mean/run.json").read_text())
+        record = json.loads((self.folder / "mean/f.run.json").read_text())
         self.assertIn("courtyard.gltf", record["config_toml"])
         self.assertEqual(list(record["files"]), ["f.0009.exr"])
         # The screen, by which eccentricities are known, is that of the record.
         self.run_ok("compare", "mean/f.####.exr", "s1/f.####.exr", "--metrics", "flip")
-        (self.folder / "s1/run.json").unlink()
-        (self.folder / "s2/run.json").unlink()
+        (self.folder / "s1/f.run.json").unlink()
+        (self.folder / "s2/f.run.json").unlink()
         self.assertIn("the mean has none", self.merge("bare", renders).stderr)
 
     def test_what_does_not_belong_together(self):

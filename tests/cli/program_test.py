@@ -245,7 +245,7 @@ class Talk(harness.CliTest):
 
     def test_the_summary_says_what_the_timing_says(self):
         done = self.run_ok("render", "--config", str(harness.SOURCE / "examples" / "example.toml"), "--size", "160x90", "--frames", "1-2", "-o", "f.####.exr")
-        with open(self.folder / "timing.csv", encoding="utf-8") as file:
+        with open(self.folder / "f.timing.csv", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         seconds = sum(float(row["trace_ms"]) for row in rows) / 1000
         samples = sum(int(row["samples"]) for row in rows)
@@ -328,7 +328,7 @@ class Talk(harness.CliTest):
         self.write("log.csv", harness.moving_gaze())
         self.run_ok("render", "box.gltf", "--gaze", "log.csv", "--frames", "2-3", "--size", "64x36", "--seed", "9", "-o",
                     "a/f.####.exr", "--quiet")
-        record = json.loads((self.folder / "a/run.json").read_text())
+        record = json.loads((self.folder / "a/f.run.json").read_text())
         self.assertEqual((record["frames"], record["facts"]["state"]), ("2-3", "done"))
         self.assertEqual(len(record["input_digests"]), 2)
         self.write("again.toml", record["config_toml"])

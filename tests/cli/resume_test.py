@@ -66,7 +66,7 @@ class Sequences(harness.CliTest):
                 (self.folder / folder).mkdir()
                 killed += self.kill_after(folder, pictures, *more) == -signal.SIGKILL
                 self.assertEqual(self.render(folder, *more, "--resume"), whole)
-                self.assertEqual(self.frames_in_timing(f"{folder}/timing.csv"), list(range(1, 13)))
+                self.assertEqual(self.frames_in_timing(f"{folder}/f.timing.csv"), list(range(1, 13)))
                 self.assertEqual([name for name in self.files(folder) if "part" in name or "tmp" in name], [])
         self.assertGreater(killed, 0, "every run was finished before it could be killed")
 
@@ -117,8 +117,8 @@ class Sequences(harness.CliTest):
         self.assertEqual(records, sorted(f"{stem}.{frames}.{suffix}" for frames in ("1-4", "5-8", "9-12")
                                          for stem, suffix in (("run", "json"), ("timing", "csv"))))
         self.assertIn("1-12", self.run_ok("merge", "parts").stdout)
-        self.assertEqual(self.frames_in_timing("parts/timing.csv"), list(range(1, 13)))
-        digests = [json.loads((self.folder / folder / "run.json").read_text())["settings_digest"] for folder in ("parts", "whole")]
+        self.assertEqual(self.frames_in_timing("parts/f.timing.csv"), list(range(1, 13)))
+        digests = [json.loads((self.folder / folder / "f.run.json").read_text())["settings_digest"] for folder in ("parts", "whole")]
         self.assertEqual(digests[0], digests[1])
         self.assert_refused(["merge", "parts"], ["exists", "--overwrite"])
 

@@ -48,7 +48,7 @@ class Locks(Running):
         process = subprocess.Popen([*before, harness.PROGRAM, "render", *JOB, *self.OUTPUTS, *self.SLOW, *more], cwd=self.folder,
                                    stderr=subprocess.PIPE, text=True)
         self.addCleanup(lambda: (process.poll() is None and process.kill(), process.wait(), process.stderr.close()))
-        self.wait_for(lambda: all(self.owners(folder) for folder in ("a", "b")) and (self.folder / "a/run.files").exists(), process)
+        self.wait_for(lambda: all(self.owners(folder) for folder in ("a", "b")) and (self.folder / "a/f.run.files").exists(), process)
         return process
 
     def owners(self, folder):

@@ -39,7 +39,7 @@ def make(folder, size="64x36", frames=3):
     for name, role, of, label, options in RUNS:
         run(folder, *common, "-o", f"{name}/p.####.exr", "-o", f"{name}/p.####.png", "--seed", "1", *options)
         run(folder, "compare", "ref/p.####.exr", f"{name}/p.####.exr", "--metrics", ",".join(METRICS), "--json", f"{name}.json")
-        with open(folder / name / "timing.csv", newline="") as file:
+        with open(folder / name / "p.timing.csv", newline="") as file:
             timing = list(csv.DictReader(file))
         scores = json.loads((folder / f"{name}.json").read_text())
         seconds = sum(float(row["total_ms"]) for row in timing) / 1000 / frames

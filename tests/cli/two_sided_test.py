@@ -91,10 +91,10 @@ class TwoSided(harness.CliTest):
 
     def test_the_record_says_that_it_is_not_causal(self):
         self.render("both", "--frames", "3")
-        facts = json.loads((self.folder / "both" / "run.json").read_text())["facts"]
+        facts = json.loads((self.folder / "both" / "f.run.json").read_text())["facts"]
         self.assertEqual(facts["causal"], "false")
         self.render("one", "--frames", "3", "--accumulate", "reproject")
-        self.assertNotIn("causal", json.loads((self.folder / "one" / "run.json").read_text())["facts"])
+        self.assertNotIn("causal", json.loads((self.folder / "one" / "f.run.json").read_text())["facts"])
 
     def test_what_cannot_be_is_refused(self):
         for more, message in (

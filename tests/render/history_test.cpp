@@ -118,7 +118,7 @@ TEST(History, FramesThatAreTracedInPartsAndFinishedInOrderAreOneRunToTheBit) {
     PipelineSettings settings = settings_of();
     settings.reconstruction.filter = filter;
     const auto whole = render(scene, plan_of(1, 6), settings);
-    settings.output.run_directory = folder / ".";
+    settings.output.run_name = folder / "frame";
     settings.output.exr.pattern = folder / "f.####.exr";
     PipelineSettings tracing = settings;
     tracing.stage = SequenceStage::trace;

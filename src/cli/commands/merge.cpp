@@ -36,7 +36,7 @@ void check_files(const std::vector<RunPart>& parts, const MergeArguments& argume
   for (const BadFile& file : bad.size() > kNamedByError ? bad : std::vector<BadFile>()) {
     std::fprintf(stderr, "gazetrace: bad file: %s: %s\n", bounded(file.path).c_str(), bounded(file.problem).c_str());
   }
-  refuse_bad_files(arguments.inputs.front(), bad);
+  refuse_bad_files(folder_of_run(parts.front().run_name), bad);
 }
 
 MergeResult run_merge_means(const MergeArguments& arguments, const std::vector<std::string>& command_line) {
@@ -80,9 +80,11 @@ int run_merge(const MergeArguments& arguments, const std::vector<std::string>& c
 
 Command add_merge_command(CLI::App& app, const Invocation& invocation) {
   auto arguments = std::make_shared<MergeArguments>();
-  app.add_option("input", arguments->inputs,
-                 "The folder that parts were rendered into; with --mean, renders of one job with different seeds: "
-                 "frame.####.exr of each")
+  app.add_option(
+         "input", arguments->inputs,
+         "The folder that parts were rendered into or, where those of several sequences are there, the pictures "
+         "of one, as out/frame.####.exr; with --mean, renders of one job with different seeds: frame.####.exr "
+         "of each")
       ->required()
       ->type_name("INPUT");
   app.add_flag("--mean", arguments->mean,
@@ -97,7 +99,7 @@ Command add_merge_command(CLI::App& app, const Invocation& invocation) {
   app.add_option("--threads", arguments->threads, "For comparing files; 0: as many as the machine has")
       ->check(CLI::NonNegativeNumber)
       ->type_name("N");
-  app.add_flag("--overwrite", arguments->overwrite, "Replaces timing.csv, run.json and pictures");
+  app.add_flag("--overwrite", arguments->overwrite, "Replaces timing, record and pictures");
   add_json_option(app, arguments->json);
   return {[arguments, line = invocation.arguments] { return run_merge(*arguments, line); }, {}};
 }

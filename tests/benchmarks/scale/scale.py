@@ -55,7 +55,7 @@ class Program:
         done = subprocess.run(words, capture_output=True, text=True)
         if done.returncode != 0:
             sys.exit(f"{' '.join(words)}\n{done.stderr}")
-        with open(next(self.folder.glob("timing*.csv")), newline="") as file:
+        with open(next(self.folder.glob("*timing*.csv")), newline="") as file:
             row = next(csv.DictReader(file))
         return {k: float(v) for k, v in row.items() if not k.startswith("gaze_")}, picture
 

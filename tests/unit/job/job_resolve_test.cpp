@@ -61,7 +61,7 @@ TEST_F(Resolve, ARecordOfAnEmbeddedRunCarriesNoTimeOfDay) {
   EXPECT_THAT(record, Not(HasSubstr(kStamp)));
   EXPECT_THAT(record, Not(HasSubstr("2023/10/30")));
   EXPECT_THAT(record, HasSubstr("\"state\": \"done\""));
-  for (const char* name : {"f.0001.exr", "f.0002.exr", "timing.csv"}) {
+  for (const char* name : {"f.0001.exr", "f.0002.exr", "f.timing.csv"}) {
     EXPECT_THAT(file_bytes(folder_ / name), Not(HasSubstr(kStamp))) << name;
   }
 }
@@ -274,6 +274,23 @@ TEST_F(Resolve, AnAnchorAgesAwayFromTheLogIsRefused) {
   set_option(job_, "gaze-anchor", "-9000000000s=0s");
   EXPECT_THAT([&] { resolve(job_); },
               testing::ThrowsMessage<Error>(HasSubstr("`gaze-anchor`: -9000000000s lies ages away from the log")));
+}
+
+// What a run of the version before has left under the name of no sequence is taken up by a run that goes on.
+TEST_F(Resolve, RecordsUnderFormerNamesAreTakenUp) {
+  const std::string record = rendered(job_);
+  write_text_atomically(folder_ / "run.json", record);
+  std::filesystem::rename(folder_ / "f.timing.csv", folder_ / "timing.csv");
+  const std::string rows = file_bytes(folder_ / "timing.csv");
+  set_option(job_, "resume", "true");
+  Job other = job_;
+  set_option(other, "output", std::vector{folder_ / "g.####.exr"});
+  prepare_outputs(resolve(other));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "g.run.json")) << "the record was that of f";
+  prepare_outputs(resolve(job_));
+  EXPECT_EQ(file_bytes(folder_ / "f.run.json"), record);
+  EXPECT_EQ(file_bytes(folder_ / "f.timing.csv"), rows);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "run.json"));
 }
 
 TEST_F(Resolve, StillsHaveRecordsOfTheirOwn) {

@@ -30,11 +30,12 @@ class RecordedRuns : public testing::Test {
     record.settings_digest = "d1";
     record.part_digests = {"d2", "d3"};
     record.facts["view"] = "a view";
-    write_text_atomically(folder_ / "run.json", run_record_json(record));
+    write_text_atomically(folder_ / record_name_, run_record_json(record));
     return find_recorded_run(folder_ / "f.####.exr", digest);
   }
 
   TemporaryFolder folder_;
+  std::string record_name_ = "f.run.json";
   std::string log_ = folder_ / "log.csv";
   Job job_;
 };
@@ -47,6 +48,15 @@ TEST_F(RecordedRuns, TheScreenIsThatOfTheLogWhereNoneIsStated) {
   ASSERT_TRUE(run->resolved.plan_settings.display);
   EXPECT_EQ(run->resolved.plan_settings.display->width_px, 1600);
   EXPECT_EQ(run->resolved.plan_settings.display->distance_cm, 65);
+}
+
+TEST_F(RecordedRuns, RecordsOfTheVersionBeforeAndOfPicturesOfAnotherNameAreFound) {
+  for (const char* name : {"run.json", "beauty.run.json"}) {
+    record_name_ = name;
+    EXPECT_TRUE(found()) << name;
+    EXPECT_FALSE(found("d4")) << name;
+    std::filesystem::remove(folder_ / name);
+  }
 }
 
 TEST_F(RecordedRuns, ALogThatIsGoneLeavesTheScreenUnknown) {

@@ -33,8 +33,8 @@ class Merge : public testing::Test {
       row.trace_ms = frame;
       rows.push_back(row);
     }
-    write_text_atomically(timing_file_name(folder_.path(), record.frames, true), timing_csv_text(rows));
-    write_text_atomically(run_record_file_name(folder_.path(), record.frames, true), run_record_json(record));
+    write_text_atomically(timing_file_name(run_name_, record.frames, true), timing_csv_text(rows));
+    write_text_atomically(run_record_file_name(run_name_, record.frames, true), run_record_json(record));
   }
   // These parts have no pictures.
   static MergeOptions options(bool allow_missing = false, bool overwrite = false) {
@@ -55,7 +55,21 @@ class Merge : public testing::Test {
     }
   }
   TemporaryFolder folder_;
+  std::string run_name_ = folder_.path() + "/";  // of the version before, whose parts have the name of no sequence
 };
+
+TEST_F(Merge, OneSequenceOfSeveralInAFolder) {
+  for (const char* name : {"f", "g"}) {
+    run_name_ = folder_ / name;
+    write(part("1-2"), {1, 2});
+    write(part("3-4"), {3, 4});
+  }
+  expect_error({"g.timing.1-2.csv: is of another sequence than", "f.timing.1-2.csv", "as out/frame.####.exr"});
+  EXPECT_EQ(merge_runs(folder_ / "g.####.exr", options()).frames, "1-4");
+  EXPECT_EQ(read_run_record(folder_ / "g.run.json").frames, "1-4");
+  EXPECT_EQ(read_timing_csv(folder_ / "g.timing.csv").size(), 4U);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "f.run.json"));
+}
 
 TEST_F(Merge, JoinsInOrderOfFrames) {
   write(part("9-12"), {9, 10, 11, 12});
@@ -299,7 +313,7 @@ TEST_F(MergeFiles, TheJournalOfAKilledPartCounts) {
   RunRecord killed = part("5-6");
   write(killed, {5});
   write_text_atomically(folder_ / "f.5.png", "picture f.1.png");
-  const std::string journal = file_journal_name(run_record_file_name(folder_.path(), "5-6", true));
+  const std::string journal = file_journal_name(run_record_file_name(run_name_, "5-6", true));
   write_text_atomically(journal, "5 15 " + digests_[0] + " f.5.png\n6 15 0123");
   EXPECT_THAT(problems(), testing::IsEmpty());
   EXPECT_EQ(read_file_journal(journal), (WrittenFiles{{"f.5.png", {5, 15, digests_[0]}}}));

@@ -86,10 +86,12 @@ TEST(RunRecord, NumbersThatCannotStandThereAreRefused) {
 }
 
 TEST(RunRecord, PartsCarryTheirFramesInTheName) {
-  EXPECT_EQ(timing_file_name("out", "1-100", true), "out/timing.1-100.csv");
-  EXPECT_EQ(timing_file_name("out", "1-100", false), "out/timing.csv");
-  EXPECT_EQ(run_record_file_name("out", "1,5,9-12", true), "out/run.1,5,9-12.json");
-  EXPECT_EQ(run_record_file_name("out", "1", false), "out/run.json");
+  EXPECT_EQ(timing_file_name("out/f", "1-100", true), "out/f.timing.1-100.csv");
+  EXPECT_EQ(timing_file_name("out/f", "1-100", false), "out/f.timing.csv");
+  EXPECT_EQ(run_record_file_name("out/f", "1,5,9-12", true), "out/f.run.1,5,9-12.json");
+  EXPECT_EQ(run_record_file_name("out/f", "1", false), "out/f.run.json");
+  EXPECT_EQ(run_record_file_name("out/", "1", false), "out/run.json");
+  EXPECT_EQ(traced_file_name("out/f", 7), "out/f.traced.0007.sparse");
   // Names stay below the 255 bytes of common file systems, and distinct.
   std::string frames = "1";
   for (int i = 3; i < 1000; i += 2) {

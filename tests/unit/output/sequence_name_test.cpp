@@ -49,6 +49,25 @@ TEST(SequenceName, TheFolderOfAllFrames) {
   EXPECT_EQ(folder_of_frames("shot_%d/still.exr"), "shot_%d");
 }
 
+TEST(SequenceName, TheNameOfARunIsThatOfItsPictures) {
+  EXPECT_EQ(run_name_of("out/beauty.####.exr"), "out/beauty");
+  EXPECT_EQ(run_name_of("out/beauty.####.png"), "out/beauty");
+  EXPECT_EQ(run_name_of("beauty_%04d.exr"), "./beauty");
+  EXPECT_EQ(run_name_of("out/beauty<frame>.exr"), "out/beauty");
+  EXPECT_EQ(run_name_of("out/beauty.####.left.exr"), "out/beauty.left");
+  EXPECT_EQ(run_name_of("out/####_left.exr"), "out/left");
+  EXPECT_EQ(run_name_of("out/####.exr"), "out/");
+  EXPECT_EQ(run_name_of("out/beauty.####"), "out/beauty");
+  EXPECT_EQ(run_name_of("out/%04d/%04d.exr"), "out/");
+  EXPECT_EQ(run_name_of("out/shot<frame>/a.b.##.exr"), "out/a.b");
+  EXPECT_EQ(run_name_of("out/100%%.##.exr"), "out/100%");
+  EXPECT_EQ(run_name_of("shot_%d/still.exr"), "shot_%d/still");
+  EXPECT_EQ(run_name_of("still.v2.png"), "./still.v2");
+  EXPECT_EQ(folder_of_run("out/beauty"), "out");
+  EXPECT_EQ(folder_of_run("out/"), "out");
+  EXPECT_EQ(folder_of_run("./beauty"), ".");
+}
+
 void expect_usage(const std::string& pattern, std::int32_t frame, bool require_number, const char* text) {
   try {
     frame_file_name(pattern, frame, require_number);

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 PipelineSettings run_of(const std::string& pattern, const std::string& record_folder) {
   PipelineSettings settings;
   settings.output.display.pattern = pattern;
-  settings.output.run_directory = record_folder;
+  settings.output.run_name = record_folder + "/";
   return settings;
 }
 
