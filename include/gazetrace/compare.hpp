@@ -61,6 +61,9 @@ struct ComparisonSettings {
 // range: peak (above 0), contrast (above 1), ambient light (0 or more), reflectivity (0..1) and relmse's epsilon (above
 // 0), all of them finite; and where code values are relative and the room's light makes black as bright as white.
 void check_comparison(const ComparisonSettings& settings);
+// Enters what of the settings follows from others: the peak of the display and how it answers to code values, and from
+// the view the pixels per degree.
+void complete_settings(ComparisonSettings& settings, int threads);
 // Computes what the settings leave empty of HDR-FLIP's exposures from this reference. Call it with the first frame,
 // since frames compare only with the same exposures. Does nothing unless hdr_flip is among the metrics.
 void fix_flip_exposures(ComparisonSettings& settings, const ImageRgb& reference_light);

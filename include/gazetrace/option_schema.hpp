@@ -131,8 +131,19 @@ struct Option {
   std::vector<std::string> idle_words;  // when it has no effect, in the same kind of words
   std::vector<std::string> defaults;    // its values in default settings; empty: not set
 
+  // Throws Error(usage, place, ...) for a value that its type takes, and the option does not; may be empty.
+  void (*refuse)(const std::string& value, const std::string& place) = nullptr;
+
   // Throws Error(usage, place, ...) unless the option takes these values.
-  void check(const std::vector<std::string>& values, const std::string& place) const { type->check(values, place); }
+  void check(const std::vector<std::string>& values, const std::string& place) const {
+    refuse_each(values, place);
+    type->check(values, place);
+  }
+  void refuse_each(const std::vector<std::string>& values, const std::string& place) const {
+    for (std::size_t i = 0; refuse != nullptr && i < values.size(); ++i) {
+      refuse(values[i], place);
+    }
+  }
   [[nodiscard]] bool is(Trait trait) const;
   // A flag that is set unless it is turned off. The command line takes --no-NAME for it.
   [[nodiscard]] bool is_on_by_default() const;
@@ -158,6 +169,7 @@ struct OptionOf : Option {
 
   // Sets the value. Throws Error(usage, place, ...) for values that the option does not take.
   void assign(S& settings, const std::vector<std::string>& values, const std::string& place) const {
+    refuse_each(values, place);
     type->parse(values, place, reinterpret_cast<std::byte*>(&settings) + offset);
   }
   // The present value in canonical form; empty: not set.
@@ -171,6 +183,11 @@ struct OptionOf : Option {
   }
   OptionOf& decides_by_file() {
     decides = Decides::file;
+    return *this;
+  }
+  // Refuses values of its type that it does not take as soon as they are given.
+  OptionOf& checked_by(void (*names)(const std::string& value, const std::string& place)) {
+    refuse = names;
     return *this;
   }
   OptionOf& with(Trait trait) {

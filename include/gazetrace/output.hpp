@@ -288,6 +288,9 @@ RunRecord join_records(const std::vector<RunPart>& parts, const std::string& fra
 // checkpoint; a history of only the last few frames (`preroll`) gives a warning.
 MergeResult merge_runs(const std::string& where, const MergeOptions& options = {});
 
+// Makes the folder of an output where it is missing. Error(input) where the file exists and may not be replaced, and
+// where the folder cannot be made.
+void check_output_file(const std::string& path, bool overwrite);
 // Writes the text to a temporary file beside `path`, and renames that.
 void write_text_atomically(const std::string& path, const std::string& text);
 

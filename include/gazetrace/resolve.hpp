@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a job to loaded and checked inputs. Whatever can fail fails here, before the first ray is traced. A run is
+// From a job to loaded and checked inputs. Whatever can fail fails here, before the first ray is traced. run_job.hpp
+// makes files of a job; in memory a run is
 //   const Job job = load_job("job.toml");
 //   ResolvedJob resolved = resolve(job);
 //   PathTracer tracer(*resolved.scene, tracer_options(resolved.job.settings));

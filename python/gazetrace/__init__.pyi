@@ -152,6 +152,8 @@ class Rendering(Iterator[Frame]):
 class ComparisonResult:
     frames: list[dict[str, Any]]
     summary: list[dict[str, Any]]
+    conditions: dict[str, str]
+    over_limits: list[str]
     @property
     def headline(self) -> dict[str, Any]: ...
     @property
@@ -168,14 +170,14 @@ def compare(
     test: Pictures,
     *,
     metrics: Iterable[str] | None = None,
-    gaze: npt.ArrayLike | None = None,
+    gaze: npt.ArrayLike | Path | None = None,
     fps: float | None = None,
     exposure: float | None = None,
     linear: bool = True,
     display: str = "",
     view: str = "",
     regions: tuple[float, float] | None = None,
-    maps: bool = False,
+    maps: bool | Path = False,
     threads: int = 0,
     on_frame: Callable[[dict[str, Any]], object] | None = None,
     **options: Unpack[MeasureOptions],

@@ -10,7 +10,7 @@ import numpy as np
 from . import _core
 from ._columns import columns_of, frame_of
 from ._errors import Error
-from ._options import split
+from ._options import as_texts, split
 from .rendering import Frame
 
 _FIRST_METRICS = ["mse", "relmse", "psnr", "ssim", "flip"]
@@ -103,6 +103,17 @@ def _pairs(reference, test):
         yield one, other
 
 
+def _is_files(pictures):
+    return isinstance(pictures, (str, os.PathLike))
+
+
+def _gaze_list(gaze):
+    """Gaze in fractions of the frame as pairs; none where it is a log, or not given."""
+    if gaze is None or _is_files(gaze):
+        return []
+    return [tuple(pair) if np.isfinite(pair).all() else None for pair in np.atleast_2d(np.asarray(gaze, dtype=float))]
+
+
 def _gaze_at(gaze, index, size):
     """Gaze in fractions of the frame, one for all frames or one a frame, in pixels."""
     gaze = np.asarray(gaze, dtype=float)
@@ -135,12 +146,28 @@ def compare(
     code values.
 
     What files and Frames know themselves (screen, gaze, exposure, frame rate, view) need not be given. `gaze` is a pair
-    of fractions of the frame, or one pair a frame, NaN where there is none. `options` are those of the screen
-    (`screen`, `screen_px`, ...), of the metrics (`peak_cd_m2`, `relmse_epsilon`, ...) and of colour (`ocio`, ...).
+    of fractions of the frame, or one pair a frame, NaN where there is none; between files also a gaze log. `options` are
+    those of the screen (`screen`, `screen_px`, ...), of the metrics (`peak_cd_m2`, `relmse_epsilon`, ...) and of colour
+    (`ocio`, ...); between files all those of `gazetrace compare`, which also refuses what it refuses: two that differ in
+    frames, view, exposure or gaze, unless `anyway` is set.
 
     Without `metrics`: mse, relmse, psnr, ssim, flip and, where screen and gaze are known and time can be seen,
-    fovvideovdp. `maps` keeps the error maps of every frame. Returns a `ComparisonResult`.
+    fovvideovdp; between files flicker as well, where they show a second. `maps` keeps the error maps of every frame.
+    Returns a `ComparisonResult`.
     """
+    if _is_files(reference) and _is_files(test):
+        given = {"metrics": metrics, "fps": fps, "exposure": exposure, "display": display or None, "view": view or None,
+                 "region_angles": regions, "angle_reading": "eccentricity" if regions is not None else None,
+                 "threads": threads, **options}
+        if _is_files(gaze):
+            given["gaze"] = gaze
+        if _is_files(maps):
+            given["maps"] = maps
+        compared = _core.compare_files(
+            os.fspath(reference), os.fspath(test), as_texts(_core.compare_options(), given),
+            _gaze_list(gaze), maps is True, on_frame,
+        )
+        return ComparisonResult(**compared)
     metric_options, screen, color_options = split(
         options, _core.metric_options(), _core.screen_options(), _core.color_options()
     )
@@ -201,12 +228,15 @@ def _default_metrics(view, gaze_px, is_sequence, rate):
 class ComparisonResult:
     """Scores for each frame (`frames`) and for the sequence (`summary`: all frames first, then what the eye did).
 
-    `result["flip"]` is the number to quote: that of fixations where there are any, else that of all frames.
+    `result["flip"]` is the number to quote: that of fixations where there are any, else that of all frames. Of files
+    `conditions` says what the scores depend on, and `over_limits` which of `fail_above` and `fail_below` are not kept.
     """
 
-    def __init__(self, frames, summary):
+    def __init__(self, frames, summary, conditions=(), over_limits=()):
         self.frames = frames
         self.summary = summary
+        self.conditions = dict(conditions)
+        self.over_limits = list(over_limits)
 
     @property
     def headline(self):

@@ -13,7 +13,7 @@
 #include "arrays.hpp"
 #include "bind.hpp"
 #include "frame.hpp"
-#include "gazetrace/compare.hpp"
+#include "gazetrace/compare_job.hpp"
 #include "gazetrace/job_schema.hpp"
 #include "gazetrace/metric_options.hpp"
 #include "gazetrace/recorded_run.hpp"
@@ -62,17 +62,10 @@ ComparisonSettings settings_of(const ComparisonInputs& inputs) {
   settings.view = inputs.view;
   settings.frames_per_second = inputs.frames_per_second;
   settings.want_maps = inputs.want_maps;
-  settings.metric.threads = inputs.threads;
   settings.metric.peak_cd_m2 = settings.photometry.peak_cd_m2;
   settings.original_border = !choice.correct_border;
   check_comparison(settings);
-  if (settings.metric.response == DisplayResponse::linear_hdr) {
-    settings.metric.response = DisplayResponse::pq;
-  }
-  settings.photometry.response = settings.metric.response;
-  if (settings.view) {
-    settings.metric.pixels_per_degree = 1 / (settings.view->step_x * kDegPerRad);
-  }
+  complete_settings(settings, inputs.threads);
   return settings;
 }
 
@@ -258,6 +251,45 @@ std::optional<PlanarView> view_of_screen(const OptionTexts& screen, int width_px
   return view_of_display(*display, {}, width_px, height_px);
 }
 
+// Two sequences of files, as the program compares them.
+py::dict compare_files(const std::string& reference, const std::string& test, const OptionTexts& options,
+                       const std::vector<std::optional<std::pair<double, double>>>& gaze, bool want_maps,
+                       const py::object& on_frame) {
+  CompareJob job;
+  job.reference = reference;
+  job.test = test;
+  job.want_maps = want_maps;
+  assign_options(job, compare_schema(), options);
+  for (const auto& at : gaze) {
+    job.gaze_in_frame.push_back(at ? std::optional(Vec2d{at->first, at->second}) : std::nullopt);
+  }
+  py::list frames;
+  ComparedSequences compared;
+  {
+    const py::gil_scoped_release release;
+    compared = compare(job, [&](FrameScores& scores) {
+      const py::gil_scoped_acquire acquire;
+      frames.append(frame_dict(scores));
+      if (!on_frame.is_none()) {
+        on_frame(frames[frames.size() - 1]);
+      }
+      if (PyErr_CheckSignals() != 0) {
+        throw py::error_already_set();
+      }
+    });
+  }
+  py::list summary;
+  for (const SequenceScores& sequence : compared.summary) {
+    summary.append(sequence_dict(sequence));
+  }
+  py::dict result;
+  result["frames"] = frames;
+  result["summary"] = summary;
+  result["conditions"] = compared.conditions;
+  result["over_limits"] = compared.over_limits;
+  return result;
+}
+
 }  // namespace
 
 void bind_compare(py::module_& module) {
@@ -279,6 +311,7 @@ void bind_compare(py::module_& module) {
   module.def("frame_file_name", [](const std::string& pattern, std::int32_t frame) {
     return has_frame_number(pattern) ? frame_file_name(pattern, frame) : pattern;
   });
+  module.def("compare_files", &compare_files);
   module.def("view_of_screen", &view_of_screen);
   module.def("color_pipeline", &color_pipeline);
   bind_run(module);

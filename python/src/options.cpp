@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include "bind.hpp"
+#include "gazetrace/compare_job.hpp"
 #include "gazetrace/former_options.hpp"
 #include "gazetrace/job.hpp"
 #include "gazetrace/job_schema.hpp"
@@ -99,6 +100,7 @@ void bind_options(py::module_& module) {
   module.def("gaze_file_options", [] { return described(gaze_file_schema().list()); });
   module.def("screen_options", [] { return described(screen_schema().list()); });
   module.def("color_options", [] { return described(color_config_schema().list()); });
+  module.def("compare_options", [] { return described(compare_schema().list()); });
   module.def("metric_options", [] { return described(metric_schema().list()); });
 
   py::class_<Job>(module, "Job")

@@ -8,85 +8,32 @@
 
 #include "bind.hpp"
 #include "errors.hpp"
-#include "gazetrace/aovs.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace::python {
-namespace {
-
-RunRecord record_in_keywords(RunRecord record) {
-  record.warnings = in_keywords(std::move(record.warnings));
-  for (auto& [name, text] : record.facts) {
-    text = with_keywords(text);
+Rendering::Rendering(const Job& job, std::shared_ptr<const Scene> scene, Threads& threads) : scene_(std::move(scene)) {
+  if (job.settings.max_time) {
+    latest_ = Clock::now() + std::chrono::nanoseconds(job.settings.max_time->ns);
   }
-  return record;
-}
-
-struct AovsOfMemory {
-  bool first_hits = false;  // they show what samples hit first
-  LayerSettings layers;
-};
-
-// AOVs that no EXR is to hold are no mistake here, since frames are looked at in memory. Takes them out of the job.
-AovsOfMemory take_aovs_of_memory(JobSettings& settings) {
-  OutputSettings output = pipeline_settings(settings).output;
-  if (!output.exr.pattern.empty()) {
-    return {};
+  threads.run([this, job] { run(job); });
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return begun_ || ended_; });
+  if (!begun_ && failure_) {
+    std::rethrow_exception(failure_);
   }
-  output.exr.pattern = "frame.####.exr";
-  check_output_settings(output, false);
-  const AovsOfMemory aovs{pipeline_settings(settings).trace.guides, layer_settings(output.exr)};
-  settings.exr.aovs.clear();
-  return aovs;
-}
-
-}  // namespace
-
-Rendering::Rendering(Job job, std::shared_ptr<const Scene> scene, Threads& threads) : scene_(std::move(scene)) {
-  const JobSettings& settings = job.settings;
-  if (settings.scene.empty() && !scene_) {
-    throw Error(ErrorKind::usage, "", "no scene was given", "give `scene`");
-  }
-  if (settings.max_time) {
-    latest_ = Clock::now() + std::chrono::nanoseconds(settings.max_time->ns);
-  }
-  color_ = std::make_shared<ColorPipeline>(settings.color);
-  const AovsOfMemory aovs = take_aovs_of_memory(job.settings);
-  ResolveOptions options;
-  options.loaded = scene_.get();
-  resolved_ = resolve(job, options);
-  resolved_.pipeline.trace.guides = resolved_.pipeline.trace.guides || aovs.first_hits;
-  resolved_.pipeline.layers = aovs.layers;
-  prepare_outputs(resolved_);
-  files_ = output_files(resolved_.pipeline, resolved_.frames);
-  if (!files_.empty()) {
-    lock_ = lock_outputs(resolved_.pipeline, resolved_.frames);
-    warnings_ = lock_.warnings();
-    prepare_outputs(resolved_);  // another run may have made frames meanwhile
-  }
-  tracer_.emplace(scene_ ? *scene_ : *resolved_.scene, tracer_options(settings));
-  record_ = start_run_record(resolved_, *tracer_, *color_);
-  if (!files_.empty()) {
-    write_text_atomically(files_.front(), run_record_json(record_in_keywords(record_)));
-  }
-  warnings_.insert(warnings_.end(), resolved_.warnings.begin(), resolved_.warnings.end());
-  warnings_ = in_keywords(std::move(warnings_));
-  threads.run([this] { run(); });
 }
 
 Rendering::~Rendering() {
   close();
 }
 
-void Rendering::run() {
+void Rendering::run(const Job& job) {
   try {
-    render();
+    render(job);
   } catch (...) {
     const std::lock_guard guard(mutex_);
     failure_ = std::current_exception();
   }
-  tracer_.reset();
-  lock_ = {};
   const std::lock_guard guard(mutex_);
   ended_ = true;
   changed_.notify_all();
@@ -94,30 +41,40 @@ void Rendering::run() {
 
 std::unique_ptr<GivenFrame> Rendering::packed(const FrameRequest& request, RenderedFrame&& rendered,
                                               const TimingRow& row) const {
+  const ResolvedJob& resolved = run_->resolved;
   auto frame = std::make_unique<GivenFrame>();
   frame->request = request;
   frame->rendered = std::move(rendered);
   frame->row = row;
-  frame->color = color_;
-  frame->threads = resolved_.pipeline.threads;
-  const std::optional<DisplayGeometry>& screen = resolved_.plan_settings.display;
+  frame->color = run_->color;
+  frame->threads = resolved.pipeline.threads;
+  const std::optional<DisplayGeometry>& screen = resolved.plan_settings.display;
   frame->is_on_screen = screen.has_value();
-  const FrameRate& fps = resolved_.pipeline.fps;
+  const FrameRate& fps = resolved.pipeline.fps;
   frame->frames_per_second = static_cast<double>(fps.numerator) / static_cast<double>(fps.denominator);
   GazeAtTime gaze = request.gaze_true;
-  if (!gaze.movement && resolved_.job.settings.gaze_at) {
+  if (!gaze.movement && resolved.job.settings.gaze_at) {
     gaze.movement = EyeMovement::fixation;  // an eye that rests there
   }
   frame->gaze_class = gaze_class_of(gaze);
   if (frame->gaze_class != GazeClass::no_gaze && gaze.kind == GazeKind::screen) {
     frame->gaze_px =
-        gaze_in_frame(gaze, screen, resolved_.plan_settings.frame_rect, request.width_px, request.height_px);
+        gaze_in_frame(gaze, screen, resolved.plan_settings.frame_rect, request.width_px, request.height_px);
   }
   return frame;
 }
 
-void Rendering::render() {
-  PipelineObserver observer;
+void Rendering::render(const Job& job) {
+  RunObserver observer;
+  observer.begins = [this](const StartedRun& run) {
+    const std::lock_guard guard(mutex_);
+    run_ = &run;
+    facts_ = {run.resolved.frames, run.resolved.decisions, run.resolved.pipeline.settings_digest, run.files,
+              run.color->description()};
+    warnings_ = in_keywords(run.resolved.warnings);
+    begun_ = true;
+    changed_.notify_all();
+  };
   observer.stop_before_frame = [this](double frame_ms) { return !wait_until_wanted(frame_ms); };
   observer.take_frame = [this](const FrameRequest& request, RenderedFrame&& rendered, const TimingRow& row) {
     auto frame = packed(request, std::move(rendered), row);
@@ -126,24 +83,21 @@ void Rendering::render() {
     wanted_ = false;
     changed_.notify_all();
   };
-  resolved_.pipeline.trace.stop = [this] {
+  observer.stop_now = [this] {
     if (latest_ && Clock::now() >= *latest_) {
       out_of_time_ = true;
     }
     return stop_.load(std::memory_order_relaxed) || out_of_time_.load(std::memory_order_relaxed);
   };
-  const Clock::time_point begin = Clock::now();
-  SequenceResult result =
-      render_sequence(*tracer_, resolved_.plan, *color_, resolved_.pipeline, observer, std::move(resolved_.history));
-  if (!files_.empty()) {
-    finish_run_record(record_, result, resolved_.plan, std::chrono::duration<double>(Clock::now() - begin).count());
-    write_text_atomically(files_.front(), run_record_json(record_in_keywords(record_)));
-    finish_files(files_.front());
-  }
-  const Warnings late = in_keywords(result_warnings(result, resolved_.plan));
+  RunOptions options;
+  options.loaded = scene_.get();
+  options.shows_frames = true;
+  options.words = with_keywords;
+  FinishedRun run = run_job(job, observer, options);
+  const Warnings late = in_keywords(run.warnings);
   const std::lock_guard guard(mutex_);
   warnings_.insert(warnings_.end(), late.begin(), late.end());
-  result_ = std::move(result);
+  result_ = std::move(run.result);
 }
 
 bool Rendering::wait_until_wanted(double frame_ms) {
@@ -187,7 +141,7 @@ std::unique_ptr<GivenFrame> Rendering::next(const std::function<bool()>& interru
     out_of_time_ = false;  // told once
     throw Error(ErrorKind::interrupted, "",
                 "interrupted by `max-time`: " + std::to_string(result_.left.size()) + " of " +
-                    std::to_string(resolved_.frames.size()) + " frames are left, " + format_frame_list(result_.left),
+                    std::to_string(facts_.frames.size()) + " frames are left, " + format_frame_list(result_.left),
                 "go on with `resume`");
   }
   return nullptr;
@@ -259,11 +213,11 @@ void bind_rendering(py::module_& module) {
       .def("close", &Rendering::close, py::call_guard<py::gil_scoped_release>())
       .def("has_ended", &Rendering::has_ended)
       .def("warnings", &Rendering::warnings)
-      .def("files", &Rendering::files)
-      .def("view", &Rendering::view)
-      .def("frames", [](const Rendering& rendering) { return rendering.resolved().frames; })
-      .def("decisions", [](const Rendering& rendering) { return rendering.resolved().decisions; })
-      .def("digest", [](const Rendering& rendering) { return rendering.resolved().pipeline.settings_digest; })
+      .def("files", [](const Rendering& rendering) { return rendering.facts().files; })
+      .def("view", [](const Rendering& rendering) { return rendering.facts().view; })
+      .def("frames", [](const Rendering& rendering) { return rendering.facts().frames; })
+      .def("decisions", [](const Rendering& rendering) { return rendering.facts().decisions; })
+      .def("digest", [](const Rendering& rendering) { return rendering.facts().digest; })
       .def("skipped", [](const Rendering& rendering) { return rendering.result().skipped; })
       .def("left", [](const Rendering& rendering) { return rendering.result().left; })
       .def("facts", [](const Rendering& rendering) { return rendering.result().facts; })

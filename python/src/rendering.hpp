@@ -16,17 +16,16 @@
 #include <vector>
 
 #include "frame.hpp"
-#include "gazetrace/output_lock.hpp"
-#include "gazetrace/resolve.hpp"
+#include "gazetrace/run_job.hpp"
 #include "threads.hpp"
 
 namespace gazetrace::python {
 
 class Rendering {
  public:
-  // Loads and checks everything that the job names, as the program does before its first ray; its errors are those of
-  // resolve() and prepare_outputs(). With `scene` the job's own scene file is not read.
-  Rendering(Job job, std::shared_ptr<const Scene> scene, Threads& threads);
+  // Starts run_job(), and waits until its first frame comes next; what is wrong with the job is thrown here. With
+  // `scene` the job's own scene file is not read.
+  Rendering(const Job& job, std::shared_ptr<const Scene> scene, Threads& threads);
   ~Rendering();
   Rendering(const Rendering&) = delete;
   Rendering& operator=(const Rendering&) = delete;
@@ -38,35 +37,37 @@ class Rendering {
   // Gives up the frame in hand, and waits until the files that tell of the run are written.
   void close();
 
-  [[nodiscard]] const ResolvedJob& resolved() const { return resolved_; }
+  // What was decided before the first frame.
+  struct Facts {
+    std::vector<std::int32_t> frames;
+    Decisions decisions;
+    std::string digest;
+    std::vector<std::string> files;
+    std::string view;
+  };
+  [[nodiscard]] const Facts& facts() const { return facts_; }
   // Of the sequence; empty until it has ended.
   [[nodiscard]] SequenceResult result() const;
   [[nodiscard]] bool has_ended() const;
   [[nodiscard]] Warnings warnings() const;
-  [[nodiscard]] std::vector<std::string> files() const { return files_; }
-  [[nodiscard]] std::string view() const { return color_->description(); }
 
  private:
   using Clock = std::chrono::steady_clock;
-  void run();
-  void render();
+  void run(const Job& job);
+  void render(const Job& job);
   [[nodiscard]] std::unique_ptr<GivenFrame> packed(const FrameRequest& request, RenderedFrame&& rendered,
                                                    const TimingRow& row) const;
   [[nodiscard]] bool wait_until_wanted(double frame_ms);
 
   std::shared_ptr<const Scene> scene_;
-  std::shared_ptr<ColorPipeline> color_;
-  ResolvedJob resolved_;
-  std::vector<std::string> files_;
-  OutputLock lock_;
-  std::optional<PathTracer> tracer_;
-  RunRecord record_;
+  const StartedRun* run_ = nullptr;  // for the thread of the sequence alone
+  Facts facts_;
   Warnings warnings_;
   std::optional<Clock::time_point> latest_;  // by `max-time`
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  bool wanted_ = false, ended_ = false;
+  bool begun_ = false, wanted_ = false, ended_ = false;
   std::unique_ptr<GivenFrame> given_;
   std::exception_ptr failure_;
   SequenceResult result_;

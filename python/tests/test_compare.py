@@ -94,7 +94,27 @@ class CompareTest(TestCase):
             frame = next(one for one in result.frames if one["frame"] == int(row["frame"]))
             scores = next(scores for scores in frame["scores"] if scores["metric"] == row["metric"])
             self.assertEqual(f"{scores['value']:.6g}", f"{float(row['value']):.6g}", row["metric"])
+        self.assertEqual(result.conditions["gaze"], "of the reference's pictures")
+        self.assertFalse(gazetrace.compare(one, other, metrics=["flip"], fail_above="flip=1").over_limits)
+        limits = gazetrace.compare(one, other, metrics=["flip"], fail_above="flip=0", maps=True)
+        self.assertIn("above 0", limits.over_limits[0])
+        self.assertEqual(limits.maps("flip")[1].shape, (54, 96))
         self.assertAlmostEqual(rendered["flip"], result["flip"], delta=1e-3)  # the files hold half floats
+
+    def test_files_are_refused_as_by_the_program(self):
+        """Two that were looked at in different places, or from which frames are missing, unless it is asked for."""
+        job = small_job(frames="1-2", fps=10)
+        job.replace(output=[self.folder / "one/f.####.exr"]).run()
+        job.replace(output=[self.folder / "other/f.####.exr"], gaze_at=(0.1, 0.5)).run()
+        one, other = self.folder / "one/f.####.exr", self.folder / "other/f.####.exr"
+        self.assertSays("was looked at in 0.1000,0.5000", "input", gazetrace.compare, one, other)
+        self.assertGreater(gazetrace.compare(one, other, metrics=["mse"], anyway=True)["mse"], 0)
+        given = gazetrace.compare(one, other, metrics=["mse"], gaze=[(0.5, 0.5), (np.nan, np.nan)])
+        self.assertEqual([frame["gaze_class"] for frame in given.frames], ["fixation", "no-gaze"])
+        self.assertSays("3 places of gaze for 2 frames", "usage", gazetrace.compare, one, other, gaze=[(0.5, 0.5)] * 3)
+        (self.folder / "other/f.0002.exr").unlink()
+        self.assertSays("the reference has frames 1-2, the test 1", "input", gazetrace.compare, one, other, gaze=(0.5, 0.5))
+        self.assertSays("did you mean 'gaze_at'", "usage", gazetrace.compare, one, other, gaze_att=(0.5, 0.5))
 
 
 if __name__ == "__main__":

@@ -47,6 +47,16 @@ class RenderTest(TestCase):
         gc.collect()
         np.testing.assert_array_equal(radiance, expected)
 
+    def test_two_runs_do_not_write_the_same_frames(self):
+        """Of this process or, with the program, of another one, however the names are spelled."""
+        first = small_job(output=[self.folder / "f.####.exr"], frames="1-3").render()
+        next(first)
+        again = small_job(output=[self.folder / "f.%04d.exr"], frames="3-4", chunk="1/1")
+        self.assertSays("wait for it", "runtime", again.render)
+        small_job(output=[self.folder / "f.####.exr"], frames="4-5", chunk="1/1").run()
+        first.close()
+        again.run()
+
     def test_without_outputs_nothing_is_written(self):
         before = os.getcwd()
         os.chdir(self.folder)
@@ -96,7 +106,7 @@ class RenderTest(TestCase):
         with small_job(frames="1-100", output=[pattern]).render() as frames:
             next(frames)
         self.assertEqual(frames.left, list(range(2, 101)))
-        record = json.loads((self.folder / "f.run.json").read_text())
+        record = json.loads((self.folder / "frame.run.json").read_text())
         self.assertIn("interrupted", json.dumps(record))
         rest = small_job(frames="1-3", output=[pattern], overwrite=True)
         self.assertEqual([frame.frame for frame in rest.render()], [1, 2, 3])

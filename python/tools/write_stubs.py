@@ -14,19 +14,23 @@ HEAD = "# SPDX-License-Identifier: Apache-2.0\n# Written by python/tools/write_s
 TYPES = {"flag": "bool", "value": "Value", "list": "Value | Sequence[Value]", "repeated": "str | Sequence[Value]"}
 
 
+# Of compare(), which have types of their own.
+ARGUMENTS = {"metrics", "gaze", "fps", "exposure", "display", "view", "maps", "threads"}
+
+
 def option_types():
     text = HEAD + "import os\nfrom collections.abc import Iterable, Sequence\nfrom typing import TypeAlias, TypedDict\n\n"
     text += "Value: TypeAlias = str | float | os.PathLike[str]\n"
     classes = {
         "JobOptions": _core.job_options(),
         "GazeOptions": _core.gaze_file_options() + _core.screen_options(),
-        "MeasureOptions": _core.metric_options() + _core.screen_options() + _core.color_options(),
+        "MeasureOptions": _core.compare_options(),
     }
     for name, options in classes.items():
         text += f"\nclass {name}(TypedDict, total=False):\n"
         for option in options:
-            if name == "MeasureOptions" and option["name"] == "metrics":
-                continue  # an argument of its own
+            if name == "MeasureOptions" and option["name"] in ARGUMENTS:
+                continue
             kind = TYPES[option["shape"]]
             if option["unit"] == "WxH":
                 kind = "str | Sequence[int]"

@@ -123,21 +123,6 @@ std::string unknown_key_remedy(const std::string& command) {
   return "'gazetrace " + command + help + " lists the options, whose names are the keys";
 }
 
-void check_output_file(const std::string& path, bool overwrite) {
-  if (!overwrite && std::filesystem::exists(path)) {
-    throw Error(ErrorKind::input, path, "this output exists already", "give --overwrite or another name");
-  }
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  std::error_code problem;
-  if (!folder.empty() && !std::filesystem::is_directory(folder) &&
-      !std::filesystem::create_directories(folder, problem) && !std::filesystem::is_directory(folder)) {
-    throw Error(
-        ErrorKind::input, path,
-        "the folder '" + folder.string() + "' cannot be made" + (problem ? ": " + problem.message() : std::string()),
-        "choose another one");
-  }
-}
-
 void print_result(const std::string& text) {
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {

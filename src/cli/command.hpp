@@ -81,10 +81,6 @@ class CommandOptions {
   OptionSchema<S> schema_;
   std::set<std::string> given_;
 };
-// Makes the folder of an output where it is missing. Error(input) where the file exists and may not be replaced, and
-// where the folder cannot be made.
-void check_output_file(const std::string& path, bool overwrite);
-
 // Writes a result to stdout. A reader that has gone away (head, a closed pager) is no error.
 void print_result(const std::string& text);
 // Messages of the library name settings in back quotes; the program's users know them as flags: `gaze-start` becomes

@@ -90,7 +90,9 @@ std::string summary_text(const SequenceResult& result, double wall_s) {
   return text;
 }
 
-std::string summary_json(const SequenceResult& result, const ResolvedJob& resolved, double wall_s) {
+std::string summary_json(const FinishedRun& run) {
+  const ResolvedJob& resolved = run.resolved;
+  const SequenceResult& result = run.result;
   const Totals totals = add_up(result);
   nlohmann::ordered_json json;
   json["frames"] = format_frame_list(resolved.frames);
@@ -99,7 +101,7 @@ std::string summary_json(const SequenceResult& result, const ResolvedJob& resolv
   json["interrupted"] = result.interrupted;
   json["left"] = result.left.empty() ? "" : format_frame_list(result.left);
   json["settings_digest"] = resolved.pipeline.settings_digest;
-  json["wall_s"] = wall_s;
+  json["wall_s"] = run.wall_s;
   json["load_s"] = resolved.load_s;
   for (std::size_t i = 0; i < kStages.size(); ++i) {
     json["mean_ms"][kStages[i].name] = per(totals.ms[i], static_cast<double>(result.rows.size()));
@@ -109,7 +111,7 @@ std::string summary_json(const SequenceResult& result, const ResolvedJob& resolv
   json["pixels"] = totals.pixels;
   json["peak_memory_mib"] = totals.peak_memory_mib;
   json["warnings"] = nlohmann::ordered_json::array();
-  for (const Warnings& warnings : {resolved.warnings, result_warnings(result, resolved.plan)}) {
+  for (const Warnings& warnings : {resolved.warnings, run.warnings}) {
     for (const std::string& warning : warnings) {
       json["warnings"].push_back(with_flags(warning));
     }

@@ -4,12 +4,12 @@
 
 #include <string>
 
-#include "gazetrace/resolve.hpp"
+#include "gazetrace/run_job.hpp"
 
 namespace gazetrace {
 
 // Frames, mean time by stage, samples and speed; several lines.
 std::string summary_text(const SequenceResult& result, double wall_s);
-std::string summary_json(const SequenceResult& result, const ResolvedJob& resolved, double wall_s);
+std::string summary_json(const FinishedRun& run);
 
 }  // namespace gazetrace

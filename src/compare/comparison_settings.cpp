@@ -47,6 +47,18 @@ void check_comparison(const ComparisonSettings& settings) {
   }
 }
 
+void complete_settings(ComparisonSettings& settings, int threads) {
+  settings.metric.threads = threads;
+  settings.metric.peak_cd_m2 = settings.photometry.peak_cd_m2;
+  if (settings.metric.response == DisplayResponse::linear_hdr) {
+    settings.metric.response = DisplayResponse::pq;  // light is scored as the code values of such a display
+  }
+  settings.photometry.response = settings.metric.response;
+  if (settings.view) {
+    settings.metric.pixels_per_degree = 1 / (settings.view->step_x * kDegPerRad);
+  }
+}
+
 void fix_flip_exposures(ComparisonSettings& settings, const ImageRgb& reference_light) {
   if (std::find(settings.metrics.begin(), settings.metrics.end(), "hdr_flip") == settings.metrics.end()) {
     return;

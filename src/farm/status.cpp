@@ -94,7 +94,8 @@ bool observe_outputs(const FarmPlan& plan, const Outputs& outputs, FileCheck che
   const std::vector<std::int32_t> wanted = parse_frame_list(task.frames);
   const std::string record_path = run_record_file_name(run_name_of(plan), outputs.name, outputs.is_part);
   const std::set<std::int32_t> finished = finished_frames(plan.run_folder, record_path, outputs.files_per_frame, check);
-  const std::set<std::int32_t> rows = frames_of_table(timing_file_name(run_name_of(plan), outputs.name, outputs.is_part));
+  const std::set<std::int32_t> rows =
+      frames_of_table(timing_file_name(run_name_of(plan), outputs.name, outputs.is_part));
   task.all = wanted.size();
   task.done = static_cast<std::size_t>(
       std::count_if(wanted.begin(), wanted.end(), [&](std::int32_t frame) { return finished.contains(frame); }));

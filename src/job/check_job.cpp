@@ -12,34 +12,13 @@
 #include "gazetrace/resolve.hpp"
 #include "job/outputs.hpp"
 #include "job/quality_defaults.hpp"
+#include "job/registry_names.hpp"
 #include "pipeline/quality/adaptive_rates.hpp"
 
 namespace gazetrace {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class Infos>
-std::vector<std::string> names_of_all(const Infos& infos) {
-  std::vector<std::string> names;
-  names.reserve(infos.size());
-  for (const auto& info : infos) {
-    names.push_back(info.name);
-  }
-  return names;
-}
-
-// Fall-offs and filters are taken for each other, and one name, `linear`, is of both: `other` are the names of the
-// other kind, and `hint` says which option takes them.
-void check_registry_name(const char* option, const char* what, const std::string& name,
-                         const std::vector<std::string>& known, const std::vector<std::string>& other,
-                         const char* hint) {
-  if (std::find(known.begin(), known.end(), name) != known.end()) {
-    return;
-  }
-  const bool is_other = std::find(other.begin(), other.end(), name) != other.end();
-  throw Error(ErrorKind::usage, option, unknown_name_message(what, name, known), is_other ? hint : "");
-}
 
 // Farther beside the screen than this nobody looks: such numbers are pixels that were taken for fractions.
 constexpr double kMaxGazeScreens = 3;
@@ -167,21 +146,13 @@ void check_chunk(const JobSettings& job) {
 void check_job(const Job& asked, const JobSchema& schema) {
   const Job whole = with_quality_defaults(asked);
   const JobSettings& job = whole.settings;
-  const std::vector<std::string> falloff_names = names_of_all(falloffs());
-  const std::vector<std::string> filter_names = names_of_all(reconstruction_filters());
-  check_registry_name("`falloff`", "falloff", job.foveation.falloff, falloff_names, filter_names,
-                      "a filter has this name: give `filter`");
+  check_falloff_name(job.foveation.falloff, "`falloff`");
   check_foveation(job.foveation);
   if (job.foveation.falloff == "map" && job.foveation.density_map.empty()) {
     throw Error(ErrorKind::usage, "`density-map`", "the fall-off 'map' has no picture",
                 "name an EXR of samples a pixel");
   }
-  if (job.filter == "oidn" && std::find(filter_names.begin(), filter_names.end(), "oidn") == filter_names.end()) {
-    throw Error(ErrorKind::usage, "`filter`", "this build has no Open Image Denoise",
-                "build it where that library is found, or give guided");
-  }
-  check_registry_name("`filter`", "filter", filter_of(job).name, filter_names, falloff_names,
-                      "a fall-off has this name: give `falloff`");
+  check_filter_name(job.filter, "`filter`");
   if (job.foveation.falloff == "visible" && !job.foveation.target.is_given()) {
     FrameRequest request;
     request.width_px = job.size.width;

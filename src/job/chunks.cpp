@@ -105,10 +105,10 @@ std::string digest_of_borders(const JobSettings& job, const std::vector<std::int
 // The name holds a digest, so that another job in the folder has a file of its own, and none is ever replaced.
 std::string borders_path(const JobSettings& job, const std::string& digest) {
   const std::string run = output_settings(job).run_name;
-  return run.empty()
-             ? std::string()
-             : (std::filesystem::path(folder_of_run(run)) / fmt::format("chunks.{}.{}.json", job.chunk->count, digest.substr(0, 8)))
-                   .string();
+  return run.empty() ? std::string()
+                     : (std::filesystem::path(folder_of_run(run)) /
+                        fmt::format("chunks.{}.{}.json", job.chunk->count, digest.substr(0, 8)))
+                           .string();
 }
 
 std::vector<FrameChunk> chunks_in(const ChunkFile& file) {

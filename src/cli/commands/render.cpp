@@ -7,8 +7,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
@@ -18,11 +16,9 @@
 #include "cli/keep_memory.hpp"
 #include "cli/progress.hpp"
 #include "cli/run_events.hpp"
-#include "cli/run_record_file.hpp"
 #include "cli/summary.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/output_lock.hpp"
-#include "gazetrace/resolve.hpp"
+#include "gazetrace/run_job.hpp"
 
 namespace gazetrace {
 namespace {
@@ -54,18 +50,19 @@ void tell_warnings(const Warnings& warnings, RunEvents& events) {
   events.warnings(warnings);
 }
 
-void say_decisions(const ResolvedJob& resolved, const ColorPipeline& color, const PathTracer& tracer) {
+void say_decisions(const StartedRun& run) {
+  const ResolvedJob& resolved = run.resolved;
   std::fprintf(stderr, "scene: %s, loaded in %.2f s\n", resolved.scene->source.c_str(), resolved.load_s);
   for (const auto& [name, text] : resolved.decisions) {
     std::fprintf(stderr, "%s: %s\n", name.c_str(), with_flags(text).c_str());
   }
-  std::fprintf(stderr, "view: %s\n", color.description().c_str());
-  std::fprintf(stderr, "rays: %s, tree of %.0f MiB built in %.2f s\n", tracer.ray_library().c_str(),
-               static_cast<double>(tracer.memory().bvh_bytes) / 1048576.0, tracer.memory().build_s);
+  std::fprintf(stderr, "view: %s\n", run.color->description().c_str());
+  std::fprintf(stderr, "rays: %s, tree of %.0f MiB built in %.2f s\n", run.tracer.ray_library().c_str(),
+               static_cast<double>(run.tracer.memory().bvh_bytes) / 1048576.0, run.tracer.memory().build_s);
 }
 
-void tell_beginning(const ResolvedJob& resolved, const ColorPipeline& color, const PathTracer& tracer,
-                    RunEvents& events) {
+void tell_beginning(const StartedRun& run, RunEvents& events) {
+  const ResolvedJob& resolved = run.resolved;
   const JobSettings& job = resolved.job.settings;
   if (!events.on_stderr()) {
     print_warnings(resolved.warnings);
@@ -74,7 +71,7 @@ void tell_beginning(const ResolvedJob& resolved, const ColorPipeline& color, con
                resolved.pipeline.settings_digest);
   events.warnings(resolved.warnings);
   if (!is_quiet(job, events)) {
-    say_decisions(resolved, color, tracer);
+    say_decisions(run);
   }
 }
 
@@ -83,42 +80,6 @@ std::string pixel_report(const FrameRequest& request, const Frame& frame, const 
   return fmt::format("frame {} pixel {},{}: radiance {} {} {}, samples {}, variance {}\n", request.frame, pixel.x,
                      pixel.y, radiance.x, radiance.y, radiance.z, frame.sample_count(pixel.x, pixel.y),
                      frame.variance(pixel.x, pixel.y));
-}
-
-// What became known of frames while they were rendered.
-struct FramesSeen {
-  bool any_done = false;
-  std::string pixels;  // the reports on `only-pixel`
-};
-
-// All that it is given must outlive it.
-PipelineObserver observer_of(const JobSettings& job, Interruption& interruption, Progress& progress, RunEvents& events,
-                             FramesSeen& seen) {
-  PipelineObserver observer;
-  observer.frame_done = [&](const TimingRow& row, bool skipped) {
-    seen.any_done = true;
-    progress.frame_done(row.frame, row.total_ms, skipped);
-    events.frame_done(row.frame, row.total_ms, skipped);
-  };
-  if (job.only_pixel) {
-    observer.frame_ready = [&](const FrameRequest& request, const Frame& frame, double) {
-      seen.pixels += pixel_report(request, frame, *job.only_pixel);
-    };
-  }
-  observer.stop_before_frame = [&](double frame_ms) { return interruption.stop_before_frame(frame_ms); };
-  return observer;
-}
-
-// The record of a run that begins now, written where there are outputs.
-RunRecord begin_record(ResolvedJob& resolved, const PathTracer& tracer, const ColorPipeline& color,
-                       const Invocation& invocation, const RunRecordFile& file) {
-  RunRecord record = start_run_record(resolved, tracer, color, invocation.arguments);
-  if (resolved.job.settings.resume) {
-    file.warn_of_other_machine(record, resolved.warnings);
-    record.warnings = resolved.warnings;
-  }
-  file.write(record);
-  return record;
 }
 
 void say_interrupted(const ResolvedJob& resolved, const SequenceResult& result, const std::string& reason,
@@ -142,60 +103,44 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation, R
   arguments.json.check();
   Interruption interruption(std::chrono::nanoseconds(job.grace.ns),
                             job.max_time ? std::optional(std::chrono::nanoseconds(job.max_time->ns)) : std::nullopt);
-  const ColorPipeline color(job.color);
   auto loading = std::make_unique<LoadProgress>(progress_style(job.progress, quiet));
-  ResolveOptions resolving;
-  resolving.progress = [&](std::size_t done, std::size_t total) { loading->parts_done(done, total); };
-  ResolvedJob resolved = resolve(arguments.job, resolving);
-  prepare_outputs(resolved);
-  const std::vector<std::string> files = output_files(resolved.pipeline, resolved.frames);
-  const OutputLock lock = lock_outputs(resolved.pipeline, resolved.frames);
-  prepare_outputs(resolved);  // another run may have made frames until then
-  resolved.warnings.insert(resolved.warnings.end(), lock.warnings().begin(), lock.warnings().end());
-
-  loading->building_tree();
-  PathTracer tracer(*resolved.scene, tracer_options(job));
-  loading.reset();
-  interruption.frames_begin();
-  const RunRecordFile record_file(files.empty() ? std::string() : files.front());
-  RunRecord record = begin_record(resolved, tracer, color, invocation, record_file);
-  tell_beginning(resolved, color, tracer, events);
-
-  const auto begin = std::chrono::steady_clock::now();
-  Progress progress(progress_style(job.progress, quiet), resolved.plan.frames.size());
-  FramesSeen seen;
-  const PipelineObserver observer = observer_of(job, interruption, progress, events, seen);
-  resolved.pipeline.trace.stop = [&] { return interruption.stop_now(); };
-  keep_freed_memory();
-  const SequenceResult result = [&] {
-    try {
-      return render_sequence(tracer, resolved.plan, color, resolved.pipeline, observer, std::move(resolved.history));
-    } catch (const Error& error) {
-      // A stated quality may turn out to be out of reach before any picture was begun: then the folder is left as it
-      // was, so that the same command can be given again with what the message advises.
-      if (error.kind() == ErrorKind::usage && !seen.any_done) {
-        record_file.put_back();
-      }
-      throw;
-    }
-  }();
-  progress.finish();
-  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-
-  if (!files.empty()) {
-    finish_run_record(record, result, resolved.plan, wall_s);
-    record_file.write(record);
-    finish_files(files.front());
+  std::optional<Progress> progress;
+  std::string pixels;  // the reports on `only-pixel`
+  RunObserver observer;
+  observer.loading = [&](std::size_t done, std::size_t total) { loading->parts_done(done, total); };
+  observer.building_tree = [&] { loading->building_tree(); };
+  observer.begins = [&](const StartedRun& run) {
+    loading.reset();
+    interruption.frames_begin();
+    tell_beginning(run, events);
+    progress.emplace(progress_style(job.progress, quiet), run.resolved.plan.frames.size());
+    keep_freed_memory();
+  };
+  observer.frame_done = [&](const TimingRow& row, bool skipped) {
+    progress->frame_done(row.frame, row.total_ms, skipped);
+    events.frame_done(row.frame, row.total_ms, skipped);
+  };
+  if (job.only_pixel) {
+    observer.frame_ready = [&](const FrameRequest& request, const Frame& frame, double) {
+      pixels += pixel_report(request, frame, *job.only_pixel);
+    };
   }
-  tell_warnings(result_warnings(result, resolved.plan), events);
+  observer.stop_before_frame = [&](double frame_ms) { return interruption.stop_before_frame(frame_ms); };
+  observer.stop_now = [&] { return interruption.stop_now(); };
+  RunOptions options;
+  options.command_line = invocation.arguments;
+  options.words = [](const std::string& text) { return with_flags(text); };
+  const FinishedRun run = run_job(arguments.job, observer, options);
+  progress->finish();
+  tell_warnings(run.warnings, events);
   if (!quiet) {
-    std::fputs(summary_text(result, wall_s).c_str(), stderr);
+    std::fputs(summary_text(run.result, run.wall_s).c_str(), stderr);
   }
-  arguments.json.print(seen.pixels, [&] { return summary_json(result, resolved, wall_s); });
-  const int code = result.interrupted ? exit_interrupted : exit_done;
-  events.end(code, result);
-  if (result.interrupted) {
-    say_interrupted(resolved, result, interruption.reason(), events);
+  arguments.json.print(pixels, [&] { return summary_json(run); });
+  const int code = run.result.interrupted ? exit_interrupted : exit_done;
+  events.end(code, run.result);
+  if (run.result.interrupted) {
+    say_interrupted(run.resolved, run.result, interruption.reason(), events);
   }
   return code;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "job/registry_names.hpp"
 #include "job/schema/parts.hpp"
 
 namespace gazetrace {
@@ -11,6 +12,7 @@ void add_filter_options(JobSchema& schema) {
              "--falloff, which has a 'linear', too). auto: guided; linear, "
              "which passes single pixels through, with --accumulate-order before, and for uniform frames "
              "with --accumulate running or --only-pixel")
+      .checked_by(check_filter_name)
       .with(Trait::always_stated)
       .with(Trait::everyday);
 }

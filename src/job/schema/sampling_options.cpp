@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How samples are distributed. The ranges that are stated here are checked by check_foveation(), whose messages say
 // more.
+#include "job/registry_names.hpp"
 #include "job/schema/idle_rules.hpp"
 #include "job/schema/parts.hpp"
 
@@ -192,6 +193,7 @@ void add_sampling_options(JobSchema& schema) {
              "How the sampling density falls off with eccentricity ('gazetrace list falloffs'); how pixels are filled "
              "from the samples is --filter, which has a 'linear', too. Where nothing names one, --target-jod and "
              "--target-relmse take visible")
+      .checked_by(check_falloff_name)
       .with(Trait::always_stated)
       .idle_when({without_any_gaze})
       .with(Trait::everyday);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/compare_report.hpp"
+#include "job/compare/inputs.hpp"
 
 #include <fmt/format.h>
 
@@ -85,9 +85,10 @@ std::string compare_csv_rows(const FrameScores& frame) {
   return text;
 }
 
-std::string compare_text(const CompareConditions& conditions, const std::vector<SequenceScores>& summary) {
+std::string compare_text(const ComparedSequences& compared) {
+  const std::vector<SequenceScores>& summary = compared.summary;
   std::string text;
-  for (const auto& [name, value] : conditions) {
+  for (const auto& [name, value] : compared.conditions) {
     text += fmt::format("{:<14}{}\n", name, value);
   }
   const SequenceScores& claim = headline(summary);
@@ -133,10 +134,10 @@ std::string compare_text(const CompareConditions& conditions, const std::vector<
   return text;
 }
 
-std::string compare_json(const CompareConditions& conditions, const std::vector<SequenceScores>& summary,
-                         const std::vector<FrameScores>& frames) {
+std::string compare_json(const ComparedSequences& compared) {
+  const std::vector<SequenceScores>& summary = compared.summary;
   Json json;
-  for (const auto& [name, value] : conditions) {
+  for (const auto& [name, value] : compared.conditions) {
     json["conditions"][name] = value;
   }
   json["headline"] = headline(summary).gaze_class;
@@ -155,7 +156,7 @@ std::string compare_json(const CompareConditions& conditions, const std::vector<
     json["sequence"].push_back({{"gaze", part.gaze_class}, {"frames", part.frames}, {"scores", std::move(scores)}});
   }
   json["frames"] = Json::array();
-  for (const FrameScores& frame : frames) {
+  for (const FrameScores& frame : compared.frames) {
     Json scores = Json::array();
     for (const Scores& one : frame.scores) {
       scores.push_back(json_scores(one));

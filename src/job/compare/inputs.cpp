@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/compare_inputs.hpp"
+#include "job/compare/inputs.hpp"
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ std::vector<std::int32_t> frames_of_both(const CompareJob& job) {
   if (job.frames) {
     for (const std::int32_t frame : job.frames->frames) {
       if (!std::binary_search(both.begin(), both.end(), frame)) {
-        throw Error(ErrorKind::input, "--frames", fmt::format("frame {} is not in both sequences", frame));
+        throw Error(ErrorKind::input, "`frames`", fmt::format("frame {} is not in both sequences", frame));
       }
     }
     return job.frames->frames;
@@ -29,7 +29,7 @@ std::vector<std::int32_t> frames_of_both(const CompareJob& job) {
         ErrorKind::input, job.test,
         fmt::format("the reference has frames {}, the test {}", format_frame_list(reference), format_frame_list(test)),
         both.empty() ? "compare sequences of the same frames"
-                     : "name frames that both have with --frames, or say --anyway");
+                     : "name frames that both have with `frames`, or say `anyway`");
   }
   return both;
 }
@@ -62,7 +62,7 @@ void read_gaze_log(const CompareJob& job, CompareInputs& inputs) {
   const GazeLog& log = *resolved.gaze;
   if (log.kind != GazeKind::screen) {
     throw Error(ErrorKind::input, job.shared.gaze.path, "holds directions from the head, not places on a screen",
-                "compare such runs without bands, or give --gaze-at");
+                "compare such runs without bands, or give `gaze-at`");
   }
   if (log.samples.size() > 1 && knows_angles(log)) {
     inputs.movements = detect_events(log, default_event_preset(log)).labels;
@@ -133,6 +133,11 @@ CompareInputs load_compare_inputs(const CompareJob& job) {
     inputs.frames_per_second = inputs.stated_fps.value_or(0);
   }
   inputs.gaze = compared_gaze_source(job, inputs);
+  if (job.gaze_in_frame.size() > 1 && job.gaze_in_frame.size() != inputs.frames.size()) {
+    throw Error(ErrorKind::usage, "`gaze`",
+                fmt::format("{} places of gaze for {} frames", job.gaze_in_frame.size(), inputs.frames.size()),
+                "give one, or one a frame");
+  }
   return inputs;
 }
 
@@ -162,7 +167,7 @@ void check_comparable(const CompareJob& job, const CompareInputs& inputs, const 
   const std::string test_view = inputs.test_run ? inputs.test_run->view : "";
   if (!reference.is_linear && reference_view != test_view && !reference_view.empty() && !test_view.empty()) {
     differ(test_path, fmt::format("was shown through '{}', the reference through '{}'", test_view, reference_view),
-           "render both with one view, or say --anyway");
+           "render both with one view, or say `anyway`");
   }
   const bool automatic = reference_run && reference_run->settings().exposure.mode == ExposureMode::log_average;
   const auto& a = reference.facts.exposure_ev;
@@ -170,7 +175,7 @@ void check_comparable(const CompareJob& job, const CompareInputs& inputs, const 
   constexpr double kSameEv = 1e-9;
   if (a && b && std::fabs(*a - *b) > kSameEv && !(reference.is_linear && (automatic || job.exposure_ev))) {
     differ(test_path, fmt::format("was exposed by {} stops, the reference by {} ({})", *b, *a, reference_path),
-           "render both with one exposure, or say --anyway");
+           "render both with one exposure, or say `anyway`");
   }
 }
 

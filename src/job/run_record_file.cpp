@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/run_record_file.hpp"
+#include "job/run_record_file.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -11,7 +12,6 @@
 #include <system_error>
 #include <utility>
 
-#include "cli/command.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
@@ -31,7 +31,7 @@ std::string record_text(const std::string& path) {
 
 }  // namespace
 
-RunRecordFile::RunRecordFile(std::string path) : path_(std::move(path)) {
+RunRecordFile::RunRecordFile(std::string path, Words words) : path_(std::move(path)), words_(std::move(words)) {
   if (!path_.empty() && std::filesystem::exists(path_)) {
     earlier_ = record_text(path_);
   }
@@ -62,9 +62,11 @@ void RunRecordFile::write(RunRecord record) const {
   if (path_.empty()) {
     return;
   }
-  record.warnings = with_flags(std::move(record.warnings));
-  for (auto& [name, text] : record.facts) {
-    text = with_flags(text);
+  if (words_) {
+    std::transform(record.warnings.begin(), record.warnings.end(), record.warnings.begin(), words_);
+    for (auto& [name, text] : record.facts) {
+      text = words_(text);
+    }
   }
   write_text_atomically(path_, run_record_json(record));
 }

@@ -1,34 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `compare` is asked, and the frames, geometry and gaze that follow from it.
+// The frames, geometry and gaze that follow from what compare() is asked.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "gazetrace/compare.hpp"
-#include "gazetrace/metric_options.hpp"
+#include "gazetrace/compare_job.hpp"
 #include "gazetrace/recorded_run.hpp"
 
 namespace gazetrace {
-
-struct CompareJob : MetricChoice {
-  std::string reference, test;
-  std::optional<FrameList> frames;
-  std::optional<FrameRate> fps;
-  std::optional<double> exposure_ev;
-  std::optional<std::array<double, 2>> region_angles_deg;
-  AngleReading reading = AngleReading::full_angle;  // of region_angles_deg
-  JobSettings shared;  // screen, gaze, colour: the options that `render` has, under the same names
-  std::string csv, json, maps;
-  std::string pooling_weights;  // a picture, for FovVideoVDP
-  std::vector<std::string> fail_above, fail_below;
-  bool map_overlay = false;
-  bool anyway = false;
-  bool overwrite = false;
-};
 
 // What the gaze of the frames is taken from.
 struct GazeSource {
@@ -49,12 +31,9 @@ struct CompareInputs {
   GazeSource gaze;
 };
 
-// The options of the command, but the two patterns.
-OptionSchema<CompareJob> compare_schema();
-
 CompareInputs load_compare_inputs(const CompareJob& job);
 std::string picture_path(const std::string& pattern, std::int32_t frame);
-// Error(input) where the two differ in what decides how they look, unless told --anyway.
+// Error(input) where the two differ in what decides how they look, unless told `anyway`.
 void check_comparable(const CompareJob& job, const CompareInputs& inputs, const ComparedPicture& reference,
                       const ComparedPicture& test, const std::string& reference_path, const std::string& test_path);
 // As given, else as the reference was shown.
@@ -76,5 +55,9 @@ ComparedGaze compared_gaze(const CompareJob& job, const CompareInputs& inputs, c
 void check_compare_outputs(const CompareJob& job, const CompareInputs& inputs, const std::vector<std::string>& metrics);
 // Of a metric's error maps.
 std::string map_pattern(const CompareJob& job, const std::string& metric);
+
+// frame,gaze,metric,value,weighted,map_min,...,map_max and one column a band and a region.
+std::string compare_csv_header();
+std::string compare_csv_rows(const FrameScores& frame);
 
 }  // namespace gazetrace

@@ -4,9 +4,8 @@
 #include <set>
 #include <system_error>
 
-#include "cli/command.hpp"
-#include "cli/compare_inputs.hpp"
 #include "gazetrace/error.hpp"
+#include "job/compare/inputs.hpp"
 
 namespace gazetrace {
 namespace {

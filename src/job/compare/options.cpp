@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The options of `compare`. What it shares with `render` has the same names there.
-#include "cli/compare_inputs.hpp"
-#include "cli/json_output.hpp"
+#include "job/compare/inputs.hpp"
 
 namespace gazetrace {
 namespace {
@@ -56,7 +55,8 @@ void add_result_options(OptionSchema<CompareJob>& schema) {
                "OpenColorIO view; default: the reference's");
   schema.group("Results");
   schema.value("--csv", &CompareJob::csv, "FILE", "One row a frame and metric, written as it goes");
-  schema.value("--json", &CompareJob::json, "[FILE]", kJsonHelp);
+  schema.value("--json", &CompareJob::json, "[FILE]",
+               "Results as JSON, into a .json file, or on stdout in place of text (no FILE, or -)");
   schema.value("--maps", &CompareJob::maps, "FOLDER", "Error maps as pictures, METRIC.####.png");
   schema.flag("--map-overlay", &CompareJob::map_overlay, "Draws gaze and borders of the retinal regions into them");
   schema.flag("--overwrite", &CompareJob::overwrite, "Replaces outputs that are there");

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/compare_inputs.hpp"
 #include "gazetrace/error.hpp"
+#include "job/compare/inputs.hpp"
 
 namespace gazetrace {
 namespace {
@@ -21,12 +21,12 @@ std::int64_t video_time_ns(const CompareJob& job, const CompareInputs& inputs, c
     return reference.t_video_ns ? *reference.t_video_ns : *test.t_video_ns;
   }
   if (!has_frame_number(job.reference) && !has_frame_number(job.test)) {
-    throw Error(ErrorKind::usage, "--gaze", "a single picture that does not say its video time has no place in a log",
-                "give --gaze-at, or name it as a frame of a sequence: name.####.png, --frames and --fps");
+    throw Error(ErrorKind::usage, "`gaze`", "a single picture that does not say its video time has no place in a log",
+                "give `gaze-at`, or name it as a frame of a sequence: name.####.png, `frames` and `fps`");
   }
   if (!inputs.stated_fps) {
-    throw Error(ErrorKind::usage, "--gaze", "the pictures say neither their video time nor their frame rate",
-                "give --fps");
+    throw Error(ErrorKind::usage, "`gaze`", "the pictures say neither their video time nor their frame rate",
+                "give `fps`");
   }
   constexpr double kNsPerSecond = 1e9;
   return static_cast<std::int64_t>(std::floor((frame - 0.5) / *inputs.stated_fps * kNsPerSecond));
@@ -35,6 +35,9 @@ std::int64_t video_time_ns(const CompareJob& job, const CompareInputs& inputs, c
 }  // namespace
 
 GazeSource compared_gaze_source(const CompareJob& job, const CompareInputs& inputs) {
+  if (!job.gaze_in_frame.empty()) {
+    return {"given in fractions of the frame"};
+  }
   if (job.shared.gaze_at) {
     return {fmt::format("at rest at {:g},{:g} of the screen", job.shared.gaze_at->x, job.shared.gaze_at->y)};
   }
@@ -54,8 +57,8 @@ GazeSource compared_gaze_source(const CompareJob& job, const CompareInputs& inpu
 
 void check_same_gaze(const CompareJob& job, const CompareInputs& inputs, const FrameFacts& reference,
                      const FrameFacts& test, const std::string& test_path) {
-  if (job.anyway || job.shared.gaze_at || inputs.gaze_log || !has_gaze_on_screen(reference) ||
-      !has_gaze_on_screen(test)) {
+  if (job.anyway || !job.gaze_in_frame.empty() || job.shared.gaze_at || inputs.gaze_log ||
+      !has_gaze_on_screen(reference) || !has_gaze_on_screen(test)) {
     return;
   }
   const GazeAtTime& a = *reference.gaze_true;
@@ -65,12 +68,17 @@ void check_same_gaze(const CompareJob& job, const CompareInputs& inputs, const F
     throw Error(
         ErrorKind::input, test_path,
         fmt::format("was looked at in {:.4f},{:.4f} of the screen, the reference in {:.4f},{:.4f}", b.u, b.v, a.u, a.v),
-        "say with --gaze or --gaze-at where the viewer looked, or --anyway for the reference's gaze");
+        "say with `gaze` or `gaze-at` where the viewer looked, or `anyway` for the reference's gaze");
   }
 }
 
 ComparedGaze compared_gaze(const CompareJob& job, const CompareInputs& inputs, const FrameFacts& reference,
                            const FrameFacts& test, std::int32_t frame, int width_px, int height_px) {
+  if (!job.gaze_in_frame.empty()) {
+    const auto index = std::find(inputs.frames.begin(), inputs.frames.end(), frame) - inputs.frames.begin();
+    const auto& at = job.gaze_in_frame[job.gaze_in_frame.size() == 1 ? 0 : static_cast<std::size_t>(index)];
+    return at ? ComparedGaze{Vec2d{at->x * width_px, at->y * height_px}, GazeClass::fixation} : ComparedGaze{};
+  }
   std::optional<GazeAtTime> gaze = inputs.gaze.is_of_test ? test.gaze_true : reference.gaze_true;
   const std::optional<RecordedRun>& run = inputs.gaze.is_of_test ? inputs.test_run : inputs.reference_run;
   if (job.shared.gaze_at) {
