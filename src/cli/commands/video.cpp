@@ -11,9 +11,9 @@
 #include <set>
 
 #include "cli/command.hpp"
-#include "cli/compare_inputs.hpp"
 #include "cli/exit_codes.hpp"
 #include "cli/json_output.hpp"
+#include "gazetrace/compare_inputs.hpp"
 
 namespace gazetrace {
 

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <system_error>
 
+#include "gazetrace/compare_inputs.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/flicker.hpp"
-#include "job/compare/inputs.hpp"
 
 namespace gazetrace {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gazetrace/compare_inputs.hpp"
 #include "gazetrace/error.hpp"
-#include "job/compare/inputs.hpp"
 
 namespace gazetrace {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/compare/inputs.hpp"
+#include "gazetrace/compare_inputs.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The options of `compare`. What it shares with `render` has the same names there.
-#include "job/compare/inputs.hpp"
+#include "gazetrace/compare_inputs.hpp"
 
 namespace gazetrace {
 namespace {

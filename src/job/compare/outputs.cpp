@@ -4,8 +4,8 @@
 #include <set>
 #include <system_error>
 
+#include "gazetrace/compare_inputs.hpp"
 #include "gazetrace/error.hpp"
-#include "job/compare/inputs.hpp"
 
 namespace gazetrace {
 namespace {

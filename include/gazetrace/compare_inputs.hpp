@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frames, geometry and gaze that follow from what compare() is asked.
+// The frames, geometry and gaze that follow from what compare() is asked, for it and for videos.
 #pragma once
 
 #include <cstdint>
