@@ -29,5 +29,5 @@ if(GAZETRACE_SANITIZE)
     target_compile_options(gazetrace_flags INTERFACE -fno-sanitize=null,vptr,alignment,object-size)
   endif()
 endif()
-# A program loads the libraries that it calls, and no others: OpenImageIO brings 260 with it, which cost half a second.
+# A program loads the libraries that it calls, and no others.
 target_link_options(gazetrace_flags INTERFACE LINKER:--as-needed)

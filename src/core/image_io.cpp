@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/image_io.hpp"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -17,24 +13,20 @@
 #include <utility>
 
 #include "core/exr_header.hpp"
+#include "core/exr_reader.hpp"
+#include "core/picture_module.hpp"
 #include "core/png_file.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
 namespace {
 
+constexpr std::string_view kExr = "openexr";  // read by OpenEXR itself
 constexpr int kMaxSidePx = 65536;
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 30U;        // 4 GiB of bytes, 16 of floats
 constexpr std::uint64_t kPixelsOfAnyFile = std::uint64_t{1} << 20U;  // whatever its size
 // Environments and pictures to compare: of one colour or nearly, 8192 x 5461 half floats may come from a few bytes.
 constexpr PictureLimits kFloatLimits{200, std::uint64_t{256} << 20U};
-
-// OpenImageIO multiplies PNG colour by alpha unless told otherwise, which would lose the colour where alpha is 0.
-OIIO::ImageSpec keep_alpha_unassociated() {
-  OIIO::ImageSpec config;
-  config.attribute("oiio:UnassociatedAlpha", 1);
-  return config;
-}
 
 std::string reason(const std::string& message) {
   return message.empty() ? std::string("not a readable picture") : message;
@@ -43,48 +35,44 @@ std::string reason(const std::string& message) {
 // A picture that is being read, together with the bytes that it is read from.
 struct OpenPicture {
   std::vector<std::uint8_t> bytes;
-  std::unique_ptr<OIIO::Filesystem::IOMemReader> reader;
-  std::unique_ptr<OIIO::ImageInput> input;
-  std::string problem;  // why there is no input
+  std::unique_ptr<PictureReader> reader;
+  std::string problem;  // why there is no reader
   std::uint64_t file_size = 0;
 };
 
 // The most pixels that a byte of a file can stand for, by OpenImageIO's name of the format. PNG: deflate's 1032 bytes
-// of 8 pixels each, rounded up; EXR: three times what black ones have in dwab; others: more than any real picture has.
+// of 8 pixels each, rounded up; others: more than any real picture has. (Of EXRs core/exr_reader.cpp judges.)
 // Formats that are not listed may hold any number of equal pixels.
 std::uint64_t most_pixels_a_byte(std::string_view format) {
   constexpr std::array<std::string_view, 3> kOthers{"jpeg", "hdr", "bmp"};
-  return format == "png"                                                      ? 8448
-         : format == "openexr"                                                ? 8192
-         : std::find(kOthers.begin(), kOthers.end(), format) != kOthers.end() ? 65536
-                                                                              : 0;
+  return format == "png" ? 8448 : std::find(kOthers.begin(), kOthers.end(), format) != kOthers.end() ? 65536 : 0;
 }
 
 // Called before any memory is allocated, since the size is only the claim of a header of a few bytes.
-const OIIO::ImageSpec& check_size(const OpenPicture& picture, const std::string& place,
-                                  const PictureLimits& limits = {}) {
-  const OIIO::ImageSpec& spec = picture.input->spec();
-  const std::string size = std::to_string(spec.width) + " x " + std::to_string(spec.height);
-  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.width > kMaxSidePx || spec.height > kMaxSidePx ||
-      spec.depth > 1) {
+PictureReader& check_size(const OpenPicture& picture, const std::string& place, const PictureLimits& limits = {}) {
+  PictureReader& reader = *picture.reader;
+  const std::string size = std::to_string(reader.width_px) + " x " + std::to_string(reader.height_px);
+  if (reader.width_px < 1 || reader.height_px < 1 || reader.channels < 1 || reader.width_px > kMaxSidePx ||
+      reader.height_px > kMaxSidePx || reader.depth > 1) {
     throw Error(ErrorKind::input, place,
-                "a picture of " + size + " pixels and " + std::to_string(spec.nchannels) + " channels cannot be used");
+                "a picture of " + size + " pixels and " + std::to_string(reader.channels) + " channels cannot be used");
   }
-  const std::uint64_t pixels = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
+  const std::uint64_t pixels =
+      static_cast<std::uint64_t>(reader.width_px) * static_cast<std::uint64_t>(reader.height_px);
   if (pixels > kMaxPixels) {
     throw Error(
         ErrorKind::input, place,
         "a picture of " + size + " pixels is too large; at most " + std::to_string(kMaxPixels) + " are possible",
         "make it smaller");
   }
-  const std::uint64_t a_byte = most_pixels_a_byte(picture.input->format_name());
+  const std::uint64_t a_byte = most_pixels_a_byte(reader.format);
   if (a_byte > 0 && pixels > kPixelsOfAnyFile + a_byte * picture.file_size) {
     throw Error(ErrorKind::input, place,
                 "the picture is damaged: a file of " + std::to_string(picture.file_size) + " bytes cannot hold " +
                     size + " pixels",
                 "export it again");
   }
-  const auto decoded = static_cast<double>(spec.image_bytes());  // with the file's own channels and depth
+  const auto decoded = static_cast<double>(reader.decoded_bytes);
   const auto allowed =
       static_cast<double>(limits.free_bytes) + limits.expansion * static_cast<double>(picture.file_size);
   if (limits.expansion > 0 && decoded > allowed) {
@@ -95,13 +83,13 @@ const OIIO::ImageSpec& check_size(const OpenPicture& picture, const std::string&
                     std::to_string(static_cast<std::uint64_t>(limits.expansion)) + " times the file",
                 limits.by_memory ? "make the picture smaller, or raise `max-memory`" : "make it smaller");
   }
-  return spec;
+  return reader;
 }
 
-[[noreturn]] void fail_for_memory(const OIIO::ImageSpec& spec, const std::string& place) {
+[[noreturn]] void fail_for_memory(const PictureReader& reader, const std::string& place) {
   throw Error(ErrorKind::runtime, place,
-              "there is no memory for a picture of " + std::to_string(spec.width) + " x " +
-                  std::to_string(spec.height) + " pixels",
+              "there is no memory for a picture of " + std::to_string(reader.width_px) + " x " +
+                  std::to_string(reader.height_px) + " pixels",
               "make it smaller");
 }
 
@@ -136,64 +124,47 @@ bool any_transparent(const std::vector<T>& rgba, T opaque) {
   return false;
 }
 
+void check_read(const std::string& problem, const std::string& place) {
+  if (!problem.empty()) {
+    throw Error(ErrorKind::input, place, "the picture is damaged: " + problem, "export it again");
+  }
+}
+
 template <class T>
-std::vector<T> read_channels(OIIO::ImageInput& input, OIIO::TypeDesc type, int channels, T opaque,
-                             const std::string& place) {
-  const OIIO::ImageSpec& spec = input.spec();
-  const auto count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
+std::vector<T> read_channels(PictureReader& reader, int channels, T opaque, const std::string& place) {
+  const auto count = static_cast<std::size_t>(reader.width_px) * static_cast<std::size_t>(reader.height_px);
   try {
     std::vector<T> pixels(count * static_cast<std::size_t>(channels));
-    if (!input.read_image(0, 0, 0, channels, type, pixels.data())) {
-      const std::string message = reason(input.geterror());
-      throw Error(ErrorKind::input, place, "the picture is damaged: " + message, "export it again");
-    }
+    check_read(reader.read(channels, pixels), place);
     return to_rgba(std::move(pixels), count, channels, opaque);
   } catch (const std::bad_alloc&) {
-    fail_for_memory(spec, place);
+    fail_for_memory(reader, place);
   }
 }
 
 ImageRgba read_rgba(const OpenPicture& picture, const std::string& place, const PictureLimits& limits) {
-  const OIIO::ImageSpec& spec = check_size(picture, place, limits);
-  OIIO::ImageInput& input = *picture.input;
-  input.threads(1);  // since callers decode many pictures at once
+  PictureReader& reader = check_size(picture, place, limits);
   ImageRgba image;
-  image.width_px = spec.width;
-  image.height_px = spec.height;
-  const int channels = std::min(spec.nchannels, 4);
-  if (spec.format.size() == 1) {
-    image.bytes = read_channels<std::uint8_t>(input, OIIO::TypeDesc::UINT8, channels, 255, place);
+  image.width_px = reader.width_px;
+  image.height_px = reader.height_px;
+  const int channels = std::min(reader.channels, 4);
+  if (!reader.is_deep) {
+    image.bytes = read_channels<std::uint8_t>(reader, channels, 255, place);
     image.has_alpha = channels % 2 == 0 && any_transparent<std::uint8_t>(image.bytes, 255);
     return image;
   }
-  image.is_linear = spec.format.is_floating_point();
-  image.floats = read_channels<float>(input, OIIO::TypeDesc::FLOAT, channels, 1, place);
+  image.is_linear = reader.is_linear;
+  image.floats = read_channels<float>(reader, channels, 1, place);
   for (std::size_t i = 0; i < image.floats.size(); ++i) {
     if (!std::isfinite(image.floats[i])) {
       const std::size_t pixel = i / 4;
-      const auto width = static_cast<std::size_t>(spec.width);
+      const auto width = static_cast<std::size_t>(reader.width_px);
       throw Error(ErrorKind::input, place,
                   "pixel " + std::to_string(pixel % width) + ", " + std::to_string(pixel / width) + " is not finite",
                   "repair the picture");
     }
   }
   image.has_alpha = channels % 2 == 0 && any_transparent(image.floats, 1.0F);
-  return image;
-}
-
-ImageRgb read_rgb_float(OIIO::ImageInput& input, const std::string& place) {
-  const OIIO::ImageSpec& spec = input.spec();
-  const int channels = spec.nchannels >= 3 ? 3 : 1;
-  ImageRgb image(spec.width, spec.height);
-  const std::size_t count = image.pixels.size();
-  std::vector<float> values(count * static_cast<std::size_t>(channels));
-  if (!input.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data())) {
-    throw Error(ErrorKind::input, place, "the picture is damaged: " + reason(input.geterror()), "export it again");
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    image.pixels[i] = channels == 3 ? Vec3f{values[3 * i], values[3 * i + 1], values[3 * i + 2]}
-                                    : Vec3f{values[i], values[i], values[i]};
-  }
   return image;
 }
 
@@ -209,7 +180,7 @@ const char* format_by_content(std::span<const std::uint8_t> bytes) {
   constexpr std::array<Magic, 13> kMagics{{{"\x89PNG\r\n\x1a\n"sv, "png"},
                                            {"\xff\xd8\xff"sv, "jpeg"},
                                            {"#?R"sv, "hdr"},
-                                           {"\x76\x2f\x31\x01"sv, "openexr"},
+                                           {"\x76\x2f\x31\x01"sv, kExr.data()},
                                            {"RIFF"sv, "webp"},
                                            {"II*\0"sv, "tiff"},
                                            {"MM\0*"sv, "tiff"},
@@ -229,38 +200,26 @@ const char* format_by_content(std::span<const std::uint8_t> bytes) {
 
 constexpr const char* kNoKnownKind = "it is no picture of a known kind (PNG, JPEG, WebP, TIFF, DPX, EXR, HDR, ...)";
 
-// `input` is empty, and `problem` says why, where it cannot be opened. With `reader` the bytes come from there.
-void open_as(OpenPicture& picture, const char* format, const std::string& name, OIIO::ImageSpec config) {
-  picture.input = OIIO::ImageInput::create(format);
-  if (!picture.input) {
-    picture.problem = OIIO::geterror();
+// Textures are read with their alpha beside the color, many at once.
+enum class Use { picture, texture };
+
+// `picture.reader` is empty, and `problem` says why, where it cannot be opened. `bytes` must be the picture's own, or
+// outlive it; where they are empty, the file is read.
+void open_as(OpenPicture& picture, const char* format, const std::string& path, std::span<const std::uint8_t> bytes,
+             Use use, const std::string& place) {
+  const PictureSource source{format, path, bytes, use == Use::texture, use == Use::texture};
+  if (format != kExr) {
+    picture.reader = picture_module().open(source, picture.problem);
     return;
   }
-  if (picture.reader) {
-    // Also as an attribute, since some readers of OpenImageIO 2.4 lose a proxy that comes with a config.
-    void* proxy = picture.reader.get();
-    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
-    picture.input->set_ioproxy(picture.reader.get());
-  }
-  OIIO::ImageSpec unused;
-  if (!picture.input->open(name, unused, config)) {
-    picture.problem = picture.input->geterror();
-    picture.input.reset();
-  }
+  auto reader = std::make_unique<ExrReader>(source, place);
+  reader->choose_light();
+  picture.reader = std::move(reader);
 }
 
-// `bytes` must be the picture's own, or outlive it.
-void open_memory(OpenPicture& picture, std::span<const std::uint8_t> bytes, const char* format,
-                 const OIIO::ImageSpec& config) {
-  picture.reader = std::make_unique<OIIO::Filesystem::IOMemReader>(
-      OIIO::cspan<unsigned char>(bytes.data(), static_cast<std::ptrdiff_t>(bytes.size())));
-  open_as(picture, format, std::string("memory.") + format, config);
-}
-
-void open_png(OpenPicture& picture, std::span<const std::uint8_t> file_bytes, const OIIO::ImageSpec& config,
-              const std::string& place) {
+void open_png(OpenPicture& picture, std::span<const std::uint8_t> file_bytes, Use use, const std::string& place) {
   picture.bytes = essential_png(file_bytes, place);
-  open_memory(picture, picture.bytes, "png", config);
+  open_as(picture, "png", {}, picture.bytes, use, place);
 }
 
 // Of a PNG all bytes are read, so that its size is held against that of its pixels before: those of the largest depth,
@@ -287,7 +246,7 @@ void check_size_of_png(std::span<const std::uint8_t> head, std::uint64_t file_si
 }
 
 // Error(input) where the file begins as PNG does but is broken.
-OpenPicture open_file(const std::string& path, const OIIO::ImageSpec& config, const std::string& place) {
+OpenPicture open_file(const std::string& path, Use use, const std::string& place) {
   OpenPicture picture;
   std::error_code ignored;
   picture.file_size = std::filesystem::file_size(path, ignored);
@@ -308,10 +267,10 @@ OpenPicture open_file(const std::string& path, const OIIO::ImageSpec& config, co
     stream.clear();  // a file may end within its head
     if (got == bytes.size() ||
         stream.read(reinterpret_cast<char*>(bytes.data() + got), static_cast<std::streamsize>(bytes.size() - got))) {
-      open_png(picture, bytes, config, place);
+      open_png(picture, bytes, use, place);
     }
   } else {
-    open_as(picture, format, path, config);
+    open_as(picture, format, path, {}, use, place);
   }
   return picture;
 }
@@ -325,8 +284,8 @@ OpenPicture open_picture(const std::string& path, const std::string& place) {
   if (!std::filesystem::is_regular_file(path, ignored)) {
     throw Error(ErrorKind::input, place, "the picture '" + path + "' does not exist", "put it there or fix the uri");
   }
-  OpenPicture picture = open_file(path, keep_alpha_unassociated(), place_of(path, place));
-  if (!picture.input) {
+  OpenPicture picture = open_file(path, Use::texture, place_of(path, place));
+  if (!picture.reader) {
     throw Error(ErrorKind::input, place, "cannot read the picture '" + path + "': " + reason(picture.problem));
   }
   return picture;
@@ -341,11 +300,11 @@ OpenPicture open_picture(std::span<const std::uint8_t> file_bytes, const std::st
   OpenPicture picture;
   picture.file_size = file_bytes.size();
   if (is_png(file_bytes)) {
-    open_png(picture, file_bytes, keep_alpha_unassociated(), place);
+    open_png(picture, file_bytes, Use::texture, place);
   } else {
-    open_memory(picture, file_bytes, format, keep_alpha_unassociated());
+    open_as(picture, format, {}, file_bytes, Use::texture, place);
   }
-  if (!picture.input) {
+  if (!picture.reader) {
     throw Error(ErrorKind::input, place, "cannot read the picture: " + reason(picture.problem));
   }
   return picture;
@@ -361,11 +320,28 @@ void check_pixels_of_png(const OpenPicture& picture, const std::string& place, c
 }
 
 PictureSize size_of(const OpenPicture& picture, const std::string& place, const PictureLimits& limits) {
-  const OIIO::ImageSpec& spec = check_size(picture, place, limits);
-  return {spec.width, spec.height, spec.format.size() > 1, 1};
+  const PictureReader& reader = check_size(picture, place, limits);
+  return {reader.width_px, reader.height_px, reader.is_deep, 1};
 }
 
 }  // namespace
+
+ImageRgb read_rgb(PictureReader& reader, const std::string& place) {
+  const int channels = reader.channels >= 3 ? 3 : 1;
+  try {
+    ImageRgb image(reader.width_px, reader.height_px);
+    const std::size_t count = image.pixels.size();
+    std::vector<float> values(count * static_cast<std::size_t>(channels));
+    check_read(reader.read(channels, values), place);
+    for (std::size_t i = 0; i < count; ++i) {
+      image.pixels[i] = channels == 3 ? Vec3f{values[3 * i], values[3 * i + 1], values[3 * i + 2]}
+                                      : Vec3f{values[i], values[i], values[i]};
+    }
+    return image;
+  } catch (const std::bad_alloc&) {
+    fail_for_memory(reader, place);
+  }
+}
 
 ImageRgba read_image_rgba(const std::string& path, const std::string& place, const PictureLimits& limits) {
   const std::string full_place = place_of(path, place);
@@ -395,70 +371,20 @@ ImageRgb read_image_rgb_float(const std::string& path) {
   if (!std::filesystem::is_regular_file(path, ignored)) {
     throw Error(ErrorKind::input, path, "there is no such file");
   }
-  const OpenPicture picture = open_file(path, OIIO::ImageSpec(), path);
-  if (!picture.input) {
+  const OpenPicture picture = open_file(path, Use::picture, path);
+  if (!picture.reader) {
     throw Error(ErrorKind::input, path, "cannot be read: " + reason(picture.problem));
   }
   check_pixels_of_png(picture, path, kFloatLimits);
-  const OIIO::ImageSpec& spec = picture.input->spec();
-  try {
-    return read_rgb_float(*picture.input, path);
-  } catch (const std::bad_alloc&) {
-    fail_for_memory(spec, path);
-  }
+  return read_rgb(*picture.reader, path);
 }
 
 std::vector<std::uint8_t> encode_image(const std::string& path, int width_px, int height_px, int bits,
                                        std::span<const std::uint8_t> rgb, const EncodeOptions& options) {
-  const auto fail = [&](const std::string& message) {
-    throw Error(ErrorKind::runtime, path, "cannot encode the picture: " + message);
-  };
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path);
-  if (!output) {
-    fail(OIIO::geterror());
-  }
-  const OIIO::TypeDesc type = bits == 16 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
-  OIIO::ImageSpec spec(width_px, height_px, 3, options.file_bits > 8 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:BitsPerSample", options.file_bits);
-  const auto add_text = [&](const char* name, const std::string& value) {
-    if (!value.empty()) {  // JPEG's writer ends the process when it gets an empty text
-      spec.attribute(name, value);
-    }
-  };
-  add_text("Software", options.software);
-  add_text("ImageDescription", options.note);
-  add_text("DocumentName", options.note);  // DPX cuts descriptions after 100 characters, project names after 200
-  // PNG's filter 64 (the mean of left and upper neighbour) leaves noise in which a search for repeats finds little: run
-  // lengths and Huffman codes alone make files a tenth larger than zlib's level 1, in three quarters of its time.
-  if (output->format_name() == std::string_view("png")) {
-    spec.attribute("compression", "rle");
-    spec.attribute("png:compressionLevel", 1);
-    spec.attribute("png:filter", 64);
-  }
-  spec.attribute("CompressionQuality", options.quality);
-  spec.attribute("jpeg:subsampling", "4:4:4");
-  // TIFF would otherwise contain the time of writing, and the same frame would not give the same bytes.
-  spec.attribute("DateTime", "0000:00:00 00:00:00");
-
-  std::vector<std::uint16_t> reduced;
-  const void* pixels = rgb.data();
-  if (bits == 16 && options.file_bits == 10) {
-    // OpenImageIO truncates the lower bits, so it gets values whose upper ten bits are already rounded.
-    reduced.resize(rgb.size() / 2);
-    std::memcpy(reduced.data(), rgb.data(), rgb.size());
-    for (std::uint16_t& value : reduced) {
-      const unsigned nearest = (value * 1023U + 32767U) / 65535U;
-      value = static_cast<std::uint16_t>(nearest << 6U | nearest >> 4U);
-    }
-    pixels = reduced.data();
-  }
-
-  // Encoded in memory, because only write_bytes_atomically (core/atomic_file.cpp) reports a full disk reliably.
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput writer(bytes);
-  if (!output->set_ioproxy(&writer) || !output->open(path, spec) || !output->write_image(type, pixels) ||
-      !output->close()) {
-    fail(output->geterror());
+  std::vector<std::uint8_t> bytes;
+  const std::string problem = picture_module().encode(path, width_px, height_px, bits, rgb, options, bytes);
+  if (!problem.empty()) {
+    throw Error(ErrorKind::runtime, path, "cannot encode the picture: " + problem);
   }
   return bytes;
 }
@@ -467,19 +393,12 @@ std::string read_image_note(const std::string& path) {
   if (const std::optional<std::string> note = png_description(path)) {
     return *note;
   }
-  OpenPicture picture;
   try {
-    picture = open_file(path, OIIO::ImageSpec(), path);
+    const OpenPicture picture = open_file(path, Use::picture, path);
+    return picture.reader ? picture.reader->note : std::string();
   } catch (const Error&) {
     return {};
   }
-  const OIIO::ImageInput* const input = picture.input.get();
-  if (input == nullptr) {
-    return {};
-  }
-  // DPX keeps the whole text in the document name only; other formats have no name, or the same text in both.
-  const std::string name(input->spec().get_string_attribute("DocumentName"));
-  return name.empty() ? std::string(input->spec().get_string_attribute("ImageDescription")) : name;
 }
 
 }  // namespace gazetrace

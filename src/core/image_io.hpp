@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads and writes picture files; the only way to OpenImageIO. (EXR frames are written by output/exr.)
+// Reads and writes picture files; the only way to OpenImageIO, by picture_module.hpp. (EXR frames are written by
+// output/exr.)
 #pragma once
 
 #include <cstddef>
@@ -53,7 +54,6 @@ ImageRgb read_image_rgb_float(const std::string& path);
 struct EncodeOptions {
   int file_bits = 8;     // per channel, in the file: 8, 10 (DPX) or 16
   int quality = 95;      // of JPEG
-  int png_level = 1;     // zlib level; chosen with tests/benchmarks/color_and_write.cpp
   std::string software;  // the program's name, for the header
   std::string note;      // one line of text for the header, which read_image_note() returns
 };

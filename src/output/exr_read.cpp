@@ -12,7 +12,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <new>
@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "core/exr_header.hpp"
+#include "core/exr_reader.hpp"
 #include "gazetrace/output.hpp"
 #include "output/exr.hpp"
 #include "output/exr_layers.hpp"
@@ -48,7 +49,7 @@ void check_size(const Imf::Header& header, const std::string& path) {
 }
 
 // Opens an EXR and gives what `read` makes of it; what OpenEXR throws becomes Error(input).
-template <class File = Imf::InputFile, class Read>
+template <class File, class Read>
 auto read_exr(const std::string& path, const Read& read) {
   if (!std::filesystem::exists(path)) {
     throw Error(ErrorKind::input, path, "there is no such file");
@@ -66,58 +67,46 @@ auto read_exr(const std::string& path, const Read& read) {
   }
 }
 
-std::string gray_channel(const Imf::ChannelList& channels) {
-  auto second = channels.begin();
-  if (second != channels.end() && ++second == channels.end()) {
-    return channels.begin().name();
+std::string gray_channel(const std::vector<std::string>& names) {
+  if (names.size() == 1) {
+    return names.front();
   }
   for (const char* name : {"Y", "samples_per_pixel", "R"}) {
-    if (channels.findChannel(name) != nullptr) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) {
       return name;
     }
   }
   return {};
 }
 
+ExrReader open_exr(const std::string& path) {
+  if (!std::filesystem::exists(path)) {
+    throw Error(ErrorKind::input, path, "there is no such file");
+  }
+  check_exr_header(path, path);
+  return ExrReader({"openexr", path, {}, false, false}, path);
+}
+
 }  // namespace
 
 ImageRgb read_exr_rgb(const std::string& path) {
-  return read_exr(path, [&](Imf::InputFile& file) {
-    check_size(file.header(), path);
-    const Imath::Box2i window = file.header().dataWindow();
-    if (file.header().channels().findChannel("R") == nullptr) {
-      throw Error(ErrorKind::input, path, "the EXR has no channel R", "name an RGB picture");
-    }
-    ImageRgb image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1);
-    Imf::FrameBuffer buffer;
-    constexpr std::array<const char*, 3> kNames{"R", "G", "B"};
-    for (std::size_t c = 0; c < 3; ++c) {
-      buffer.insert(kNames[c], Imf::Slice::Make(Imf::FLOAT, &image.pixels.data()->x + c, window, sizeof(Vec3f),
-                                                sizeof(Vec3f) * static_cast<std::size_t>(image.width_px)));
-    }
-    file.setFrameBuffer(buffer);
-    file.readPixels(window.min.y, window.max.y);
-    return image;
-  });
+  ExrReader reader = open_exr(path);
+  reader.choose_light();
+  return read_rgb(reader, path);
 }
 
 ImageGray read_exr_gray(const std::string& path) {
-  return read_exr(path, [&](Imf::InputFile& file) {
-    check_size(file.header(), path);
-    const Imath::Box2i window = file.header().dataWindow();
-    const std::string name = gray_channel(file.header().channels());
-    if (name.empty()) {
-      throw Error(ErrorKind::input, path, "the EXR has several channels, and none of them is Y, samples_per_pixel or R",
-                  "write a picture of one channel");
-    }
-    ImageGray image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1);
-    Imf::FrameBuffer buffer;
-    buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, image.pixels.data(), window, sizeof(float),
-                                         sizeof(float) * static_cast<std::size_t>(image.width_px)));
-    file.setFrameBuffer(buffer);
-    file.readPixels(window.min.y, window.max.y);
-    return image;
-  });
+  ExrReader reader = open_exr(path);
+  const std::string name = gray_channel(reader.names);
+  if (name.empty()) {
+    throw Error(ErrorKind::input, path, "the EXR has several channels, and none of them is Y, samples_per_pixel or R",
+                "write a picture of one channel");
+  }
+  ImageGray image(reader.width_px, reader.height_px);
+  if (const std::string problem = reader.read({&name, 1}, image.pixels); !problem.empty()) {
+    throw Error(ErrorKind::input, path, "cannot read the EXR: " + problem);
+  }
+  return image;
 }
 
 std::vector<ExrLayers> read_exr_layers(const std::string& path) {

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// What of an EXR is the picture: its display window, and the channels that are light. The files are written with
+// OpenEXR itself, by this test's own code.
+#include "core/exr_reader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfTiledOutputFile.h>
+
+#include <fstream>
+#include <functional>
+#include <iterator>
+
+#include "core/image_io.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/output.hpp"
+#include "gazetrace/scene.hpp"
+#include "output/exr.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace gazetrace {
+namespace {
+
+using testing::HasSubstr;
+
+// The value of a channel at a pixel: another for each of both.
+float value_at(std::size_t channel, int x, int y) {
+  return static_cast<float>(channel + 1) + static_cast<float>(x) / 64.0F + static_cast<float>(y) / 1024.0F;
+}
+
+std::string write_exr(const std::string& path, const Imath::Box2i& display, const Imath::Box2i& data,
+                      const std::vector<std::string>& channels, Imf::Compression compression = Imf::ZIP_COMPRESSION) {
+  Imf::Header header(display, data);
+  header.compression() = compression;
+  const int width = data.max.x - data.min.x + 1;
+  const int height = data.max.y - data.min.y + 1;
+  std::vector<std::vector<float>> planes;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    header.channels().insert(channels[c], Imf::Channel(Imf::FLOAT));
+    std::vector<float>& plane = planes.emplace_back();
+    for (int y = data.min.y; y <= data.max.y; ++y) {
+      for (int x = data.min.x; x <= data.max.x; ++x) {
+        plane.push_back(value_at(c, x, y));
+      }
+    }
+  }
+  Imf::FrameBuffer buffer;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    buffer.insert(channels[c], Imf::Slice::Make(Imf::FLOAT, planes[c].data(), data));
+  }
+  if (compression == Imf::PIZ_COMPRESSION) {  // tiles, which are another way through OpenEXR
+    header.setTileDescription(Imf::TileDescription(16, 16));
+    Imf::TiledOutputFile file(path.c_str(), header);
+    file.setFrameBuffer(buffer);
+    file.writeTiles(0, (width + 15) / 16 - 1, 0, (height + 15) / 16 - 1);
+  } else {
+    Imf::OutputFile file(path.c_str(), header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(height);
+  }
+  return path;
+}
+
+Imath::Box2i box(int x0, int y0, int x1, int y1) {
+  return {{x0, y0}, {x1, y1}};
+}
+
+const std::vector<std::string> kRgb{"R", "G", "B"};
+
+void expect_display_window(const ImageRgb& image, const Imath::Box2i& display, const Imath::Box2i& data) {
+  ASSERT_EQ(image.width_px, display.max.x - display.min.x + 1);
+  ASSERT_EQ(image.height_px, display.max.y - display.min.y + 1);
+  for (int j = 0; j < image.height_px; ++j) {
+    for (int i = 0; i < image.width_px; ++i) {
+      const int x = display.min.x + i;
+      const int y = display.min.y + j;
+      const bool there = x >= data.min.x && x <= data.max.x && y >= data.min.y && y <= data.max.y;
+      const Vec3f expected = there ? Vec3f{value_at(0, x, y), value_at(1, x, y), value_at(2, x, y)} : Vec3f{0, 0, 0};
+      ASSERT_EQ(image(i, j), expected) << i << ", " << j;
+    }
+  }
+}
+
+TEST(ExrReader, ThePictureIsTheDisplayWindow) {
+  const TemporaryFolder folder;
+  const std::vector<std::pair<Imath::Box2i, Imath::Box2i>> windows{
+      {box(0, 0, 39, 19), box(0, 0, 39, 19)},      // the same
+      {box(0, 0, 39, 19), box(8, 4, 23, 11)},      // a crop
+      {box(0, 0, 39, 19), box(-4, -2, 43, 21)},    // an overscan
+      {box(0, 0, 39, 19), box(-4, 10, 10, 30)},    // a crop that stands out
+      {box(-10, -20, 29, 3), box(-7, -9, 40, 1)},  // with an origin of its own
+  };
+  for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
+    for (const auto& [display, data] : windows) {
+      const std::string path = write_exr((folder / "picture.exr"), display, data, kRgb, compression);
+      expect_display_window(read_exr_rgb(path), display, data);
+      expect_display_window(read_image_rgb_float(path), display, data);
+      expect_display_window(load_environment(path).radiance, display, data);
+      EXPECT_EQ(read_exr_gray(write_exr((folder / "gray.exr"), display, data, {"Y"}, compression))(10, 11),
+                read_exr_rgb(path)(10, 11).x);
+      std::ifstream stream(path, std::ios::binary);
+      const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
+      const ImageRgba texture = read_image_rgba(bytes, "a texture");
+      EXPECT_EQ(texture.floats, read_image_rgba(path, "a texture").floats);
+      EXPECT_EQ(read_picture_size(bytes, "a texture").width_px, display.max.x - display.min.x + 1);
+      EXPECT_EQ(texture.floats[4 * (11 * 40 + 10)], read_exr_rgb(path)(10, 11).x);
+    }
+  }
+}
+
+TEST(ExrReader, DataBesideTheDisplayWindowAreNoPicture) {
+  const TemporaryFolder folder;
+  const std::string path = write_exr((folder / "aside.exr"), box(0, 0, 9, 9), box(10, 0, 19, 9), kRgb);
+  try {
+    static_cast<void>(read_exr_rgb(path));
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("outside its display window"));
+  }
+}
+
+// A header of a few hundred bytes would otherwise ask for gigabytes of black.
+TEST(ExrReader, AHugeDisplayWindowAroundFewPixelsIsRefused) {
+  const TemporaryFolder folder;
+  const std::string path = write_exr((folder / "huge.exr"), box(0, 0, 30000, 30000), box(0, 0, 1, 1), kRgb);
+  EXPECT_THROW(static_cast<void>(read_exr_rgb(path)), Error);
+  EXPECT_THROW(static_cast<void>(load_environment(path)), Error);
+}
+
+TEST(ExrReader, GrayIsYOrRAlone) {
+  const TemporaryFolder folder;
+  const Imath::Box2i window = box(0, 0, 3, 1);
+  for (const auto& names : std::vector<std::vector<std::string>>{{"R"}, {"Y"}, {"R", "A"}, {"Y", "Z"}}) {
+    const std::string path = write_exr((folder / "gray.exr"), window, window, names);
+    for (const ImageRgb& image : {read_exr_rgb(path), read_image_rgb_float(path)}) {
+      const float value = value_at(0, 2, 1);
+      EXPECT_EQ(image(2, 1), (Vec3f{value, value, value})) << names[0];
+    }
+    const ImageRgba texture = read_image_rgba(path, "a texture");
+    EXPECT_EQ(texture.floats[1], texture.floats[0]);
+    EXPECT_EQ(texture.floats[3], names.back() == "A" ? value_at(1, 0, 0) : 1.0F);
+  }
+}
+
+TEST(ExrReader, ColorHasAnyOrderOfChannelsAndMayBeALayer) {
+  const TemporaryFolder folder;
+  const Imath::Box2i window = box(0, 0, 3, 1);
+  for (const auto& names : std::vector<std::vector<std::string>>{
+           {"R", "G", "B", "A", "Z", "AO"}, {"view.R", "view.G", "view.B", "view.A", "Z", "normal.X"}}) {
+    const std::string path = write_exr((folder / "color.exr"), window, window, names);
+    const Vec3f expected{value_at(0, 1, 1), value_at(1, 1, 1), value_at(2, 1, 1)};
+    EXPECT_EQ(read_exr_rgb(path)(1, 1), expected);
+    EXPECT_EQ(load_environment(path).radiance(1, 1), expected);
+    EXPECT_EQ(read_image_rgba(path, "a texture").floats[3], value_at(3, 0, 0));
+  }
+}
+
+TEST(ExrReader, WhatIsNoLightIsRefusedByItsChannels) {
+  const TemporaryFolder folder;
+  const Imath::Box2i window = box(0, 0, 3, 1);
+  for (const auto& names : std::vector<std::vector<std::string>>{
+           {"Z"}, {"R", "G"}, {"A"}, {"a.R", "a.G", "a.B", "b.R", "b.G", "b.B"}, {"X", "Y", "Z"}}) {
+    const std::string path = write_exr((folder / "other.exr"), window, window, names);
+    for (const auto& read : std::vector<std::function<void()>>{
+             [&] { static_cast<void>(read_exr_rgb(path)); }, [&] { static_cast<void>(load_environment(path)); },
+             [&] { static_cast<void>(read_image_rgba(path, "a texture")); }}) {
+      try {
+        read();
+        ADD_FAILURE() << names[0];
+      } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::input);
+        EXPECT_THAT(e.what(), HasSubstr("has the channels"));
+        EXPECT_THAT(e.what(), HasSubstr(names[0]));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gazetrace
