@@ -34,14 +34,14 @@
 
 namespace gazetrace {
 
-template <DiffuseModel kDiffuse>
 class LayeredBsdf {
  public:
-  // wo.z > 0.
-  LayeredBsdf(const LayeredSurface& surface, const Vec3f& wo) noexcept
+  // wo.z > 0. DiffuseModel::matte has no layers.
+  LayeredBsdf(const LayeredSurface& surface, const Vec3f& wo, DiffuseModel diffuse = DiffuseModel::burley) noexcept
       : s_(surface),
         wo_(wo),
         facets_(surface),
+        lambertian_(diffuse != DiffuseModel::burley || facets_.anisotropic()),
         terms_(facets_.terms()),
         at_o_(terms_at(wo)),
         coat_frame_(surface.clearcoat_normal),
@@ -209,8 +209,6 @@ class LayeredBsdf {
     return scale;
   }
 
-  // Burley's shape needs a single roughness, so anisotropic surfaces are Lambertian.
-  [[nodiscard]] bool lambertian() const noexcept { return kDiffuse != DiffuseModel::burley || facets_.anisotropic(); }
   [[nodiscard]] AlbedoTerms terms_at(const Vec3f& v) const noexcept { return facets_.terms_at(terms_, v); }
 
   // The reflectance at normal incidence with which Schlick's formula gives what the film reflects at this angle; for
@@ -233,19 +231,19 @@ class LayeredBsdf {
   // s of bsdf.hpp. For reflectances other than 0.04, the Lambertian form with Burley's correction for 0.04.
   [[nodiscard]] float diffuse_scale(float cosine, const AlbedoTerms& terms) const noexcept {
     if (plain_) {
-      return lambertian() ? terms.lambert : terms.burley;
+      return lambertian_ ? terms.lambert : terms.burley;
     }
     const float average = s_.film > 0 ? terms_.albedo_average_of(film_f0_, 1.0F)
                                       : terms_.albedo_average_of(largest_channel(s_.f0), s_.f90);
     const float left = std::max(1.0F - opaque_albedo(cosine, terms), 0.0F) / std::sqrt(std::max(1.0F - average, 0.02F));
-    return lambertian() || terms.lambert < 1e-6F ? left : left * terms.burley / terms.lambert;
+    return lambertian_ || terms.lambert < 1e-6F ? left : left * terms.burley / terms.lambert;
   }
 
   // The diffuse lobe, of an opaque part that is not nothing: f without the cosine. `up` is the direction, turned to the
   // side of the view.
   [[nodiscard]] Vec3f diffuse(const Vec3f& up, const AlbedoTerms& at_i, bool through) const noexcept {
     float shape = 1;
-    if (!lambertian()) {
+    if (!lambertian_) {
       const float t = s_.base.roughness * (1.0F + dot(wo_, up)) - 0.5F;
       shape = (1.0F + t * schlick_weight(wo_.z)) * (1.0F + t * schlick_weight(up.z));
     }
@@ -362,6 +360,7 @@ class LayeredBsdf {
   LayeredSurface s_;
   Vec3f wo_;
   Facets facets_;
+  bool lambertian_;  // Burley's shape needs a single roughness, so anisotropic surfaces are Lambertian
   FacetTerms terms_;
   AlbedoTerms at_o_;
   LocalFrame coat_frame_;

@@ -13,21 +13,6 @@
 #include "trace/trace_frame.hpp"
 
 namespace gazetrace {
-namespace {
-
-Kernel kernel_of(const NamedKernel& variant, DiffuseModel diffuse) {
-  switch (diffuse) {
-    case DiffuseModel::burley:
-      return variant.burley;
-    case DiffuseModel::lambert:
-      return variant.lambert;
-    case DiffuseModel::matte:
-      break;
-  }
-  return variant.matte;
-}
-
-}  // namespace
 
 struct PathTracer::Impl {
   Impl(const Scene& source, const TracerOptions& tracer_options)
@@ -47,9 +32,7 @@ struct PathTracer::Impl {
     is_posed = true;
   }
 
-  [[nodiscard]] const NamedKernel& kernel_variant() const {
-    return choose_kernel(kernel_features(render_scene.features, render_scene), options.all_features);
-  }
+  [[nodiscard]] const NamedKernel& kernel_variant() const { return choose_kernel(render_scene, options.all_features); }
 
   const Scene* scene;
   TracerOptions options;
@@ -89,7 +72,7 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
   const NamedKernel& variant = tracer_->kernel_variant();
   FrameContext context = make_frame_context(*tracer_->scene, tracer_->render_scene, tracer_->lights, rays, settings);
   context.learned = settings.learned.get();
-  SparseFrame out = trace_frame(context, kernel_of(variant, settings.diffuse), frame, map, tracer_->options.threads);
+  SparseFrame out = trace_frame(context, variant.run, frame, map, tracer_->options.threads);
   out.stats.kernel = variant.name;
   return out;
 }
@@ -103,8 +86,7 @@ LightLearning PosedScene::learn_light(const Camera& camera, int width_px, int he
   const CameraRays rays(camera, height_px);
   const FrameContext context =
       make_frame_context(*tracer_->scene, tracer_->render_scene, tracer_->lights, rays, settings);
-  return gazetrace::learn_light(context, kernel_of(tracer_->kernel_variant(), settings.diffuse), width_px, height_px,
-                                tracer_->options.threads);
+  return gazetrace::learn_light(context, tracer_->kernel_variant().run, width_px, height_px, tracer_->options.threads);
 }
 
 Guides PosedScene::guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const {

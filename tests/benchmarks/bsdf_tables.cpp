@@ -25,7 +25,7 @@ namespace {
 
 using namespace gazetrace;
 
-using Model = LayeredBsdf<DiffuseModel::burley>;
+using Model = LayeredBsdf;
 
 constexpr std::array kRoughness{0.0F, 1e-4F, 0.01F, 0.1F, 0.3F, 0.6F, 1.0F};
 constexpr std::array kMetalness{0.0F, 0.5F, 1.0F};

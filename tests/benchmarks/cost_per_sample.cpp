@@ -108,8 +108,7 @@ int run(int argc, char** argv) {
       uniform, view_of_perspective(camera.projection.yfov_rad, options.width_px, options.height_px), {});
   const PixelFilterSampler filter(PixelFilter::box);
   FrameContext context = make_frame_context(scene, render_scene, lights, rays, options.settings);
-  const KernelFeatures needed = kernel_features(render_scene.features, render_scene);
-  const NamedKernel& kernel = choose_kernel(needed, options.all);
+  const NamedKernel& kernel = choose_kernel(render_scene, options.all);
 
   const FlushDenormals flush;
   const auto work = std::make_unique<Workspace>();
@@ -122,7 +121,7 @@ int run(int argc, char** argv) {
     for (std::size_t t = options.share / 2; t < map.tiles.size(); t += options.share) {
       SampleList list(map, map.tiles[t].first_site, map.tiles[t].site_count, 0, 1);
       while (const int count = list.next(filter, work->samples)) {
-        kernel.burley(context, *work, count, counts);
+        kernel.run(context, *work, count, counts);
         samples += static_cast<std::uint64_t>(count);
         for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
           sum += static_cast<double>(work->radiance.g[i]);

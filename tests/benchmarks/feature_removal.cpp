@@ -168,9 +168,8 @@ int run(int argc, char** argv) {
       large.push_back(measure(all.at(times), {}, view, 1, spp, round).us_per_sample);
       ratio.push_back(large.back() / small.back());
     }
-    fmt::print("{:<22} {:<22} {:12.3f} {:16.3f} {:7.3f}\n", step.name,
-               choose_kernel(kernel_features(render_scene.features, render_scene), false).name, median(small),
-               median(large), median(ratio));
+    fmt::print("{:<22} {:<22} {:12.3f} {:16.3f} {:7.3f}\n", step.name, choose_kernel(render_scene, false).name,
+               median(small), median(large), median(ratio));
     std::fflush(stdout);
   }
   return 0;

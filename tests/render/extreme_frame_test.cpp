@@ -148,8 +148,7 @@ TEST(ExtremeFrame, ManySamplesLoseNothingInTheSum) {
   const LightSampler lights(scene);
   const CameraRays rays(camera, 1);
   const FrameContext context = make_frame_context(scene, render_scene, lights, rays, settings);
-  const KernelFeatures needed = kernel_features(render_scene.features, render_scene);
-  const NamedKernel& kernel = choose_kernel(needed, false);
+  const NamedKernel& kernel = choose_kernel(render_scene, false);
   const PixelFilterSampler filter(PixelFilter::box);
   const auto work = std::make_unique<Workspace>();
   KernelCounts counts;
@@ -157,7 +156,7 @@ TEST(ExtremeFrame, ManySamplesLoseNothingInTheSum) {
   std::vector<std::array<long double, 3>> sums(map.sites.size());
   std::vector<float> in_float(map.sites.size());
   while (const int count = list.next(filter, work->samples)) {
-    kernel.burley(context, *work, count, counts);
+    kernel.run(context, *work, count, counts);
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       auto& sum = sums[work->samples.site[i]];
       sum[0] += work->radiance.r[i];

@@ -18,7 +18,7 @@ namespace {
 
 using test::layered;
 
-using Model = LayeredBsdf<DiffuseModel::burley>;
+using Model = LayeredBsdf;
 
 constexpr SampleKey kKey = make_sample_key(13, 0, 0);
 constexpr std::array kRoughness{0.0F, 1e-4F, 0.01F, 0.05F, 0.1F, 0.2F, 0.3F, 0.45F, 0.6F, 0.8F, 1.0F};

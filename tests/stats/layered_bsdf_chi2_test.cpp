@@ -20,7 +20,7 @@
 namespace gazetrace {
 namespace {
 
-using Model = LayeredBsdf<DiffuseModel::burley>;
+using Model = LayeredBsdf;
 
 constexpr int kSide = 12;  // cells along each axis, on either side of the surface
 constexpr std::size_t kCells = std::size_t{kSide} * kSide;

@@ -13,7 +13,7 @@ namespace gazetrace::test {
 // stands for eta^2 times the flux.
 inline Vec3d layered_albedo(const LayeredSurface& s, const Vec3f& wo, std::uint32_t count,
                             SampleKey key = make_sample_key(13, 0, 0)) {
-  const LayeredBsdf<DiffuseModel::burley> bsdf(s, wo);
+  const LayeredBsdf bsdf(s, wo);
   const double eta = s.solid ? (s.inside ? 1 / double{s.ior} : double{s.ior}) : 1;
   Vec3d sum;
   for (std::uint32_t i = 0; i < count; ++i) {

@@ -16,21 +16,20 @@ namespace gazetrace {
 inline constexpr float kGlossyRoughness = 0.35F;
 inline constexpr float kGlossyMetalness = 0.5F;
 
-// The radiance of an emissive material towards the ray, which must be on a side that emits.
-template <KernelFeatures kFeatures, bool kLayers>
-Vec3f emitted_radiance(const RenderScene& scene, const ChunkHits& chunk, std::size_t i,
-                       const ShadingMaterial& material) {
+// The radiance of an emissive material towards the ray, which must be on a side that emits; through its coat only where
+// the model `has_layers`.
+inline Vec3f emitted_radiance(const RenderScene& scene, const ChunkHits& chunk, std::size_t i,
+                              const ShadingMaterial& material, bool has_layers) {
   Vec3f emission = material.emission;
   if (material.emit.texture != nullptr) {
-    const Vec2f at = coordinates_at<kFeatures>(scene, chunk, i, material.emit);
-    const Vec4f c =
-        read_texture(*material.emit.texture, at.x, at.y, level_at<kFeatures>(scene, chunk, i, material.emit));
+    const Vec2f at = coordinates_at(scene, chunk, i, material.emit);
+    const Vec4f c = read_texture(*material.emit.texture, at.x, at.y, level_at(scene, chunk, i, material.emit));
     emission *= Vec3f{c.x, c.y, c.z};
   }
-  if constexpr (kLayers) {
+  if (has_layers) {
     const LayeredMaterial* layers = scene.layered.of(chunk.material[i]);
     if (layers != nullptr && layers->layers.clearcoat) {
-      const float coat = layers->source->clearcoat.factor * read_layer<kFeatures>(scene, chunk, i, layers->clearcoat).x;
+      const float coat = layers->source->clearcoat.factor * read_layer(scene, chunk, i, layers->clearcoat).x;
       emission *= passes_coat(coat, dot(chunk.geometric.get(i), chunk.direction.get(i)));
     }
   }
@@ -66,18 +65,15 @@ inline SurfaceKind kind_of_hit(const RenderScene& scene, const ChunkHits& chunk,
 }
 
 // The index into Scene::instances of hit k of the packed batch, which is in lane i.
-template <KernelFeatures kFeatures>
-std::uint32_t scene_instance_of(const RenderScene& scene, const HitBatch& hits, std::size_t k, const ChunkHits& chunk,
-                                std::size_t i) {
+inline std::uint32_t scene_instance_of(const RenderScene& scene, const HitBatch& hits, std::size_t k,
+                                       const ChunkHits& chunk, std::size_t i) {
   std::uint32_t record = hits.geometry[k];
-  if constexpr (kFeatures.instances) {
-    if (chunk.instance[i] != kNoId) {
-      const ShadingInstance& instance = scene.instances[chunk.instance[i]];
-      if (instance.scene_instance != kNoId) {
-        return instance.scene_instance;
-      }
-      record += instance.first_geometry;
+  if (chunk.instance[i] != kNoId) {
+    const ShadingInstance& instance = scene.instances[chunk.instance[i]];
+    if (instance.scene_instance != kNoId) {
+      return instance.scene_instance;
     }
+    record += instance.first_geometry;
   }
   return scene.geometries[record].scene_instance;
 }

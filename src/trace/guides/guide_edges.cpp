@@ -99,7 +99,6 @@ struct EdgeBatch {
   EdgeRows& rows;
 };
 
-template <KernelFeatures kFeatures, bool kLayers>
 void trace_batch(const EdgeFrame& frame, const EdgeBatch& batch, GuideWorkspace& work) {
   const GuideFrame& guide = frame.guide;
   const std::size_t count = std::exchange(work.count, 0);
@@ -112,7 +111,7 @@ void trace_batch(const EdgeFrame& frame, const EdgeBatch& batch, GuideWorkspace&
     std::size_t hit_count = 0;
     for (std::size_t k = begin; k < std::min(begin + kChunk, count); ++k) {
       if (is_hit(work.hits, k)) {
-        locate_hit<kFeatures>(guide.scene, work.hits, k, chunk, hit_count++);
+        locate_hit(guide.scene, work.hits, k, chunk, hit_count++);
       } else {
         rays[k].seen_by =
             work.hits.geometry[k] == kNoId ? seen_by(frame, rays[k].pixel, frame.inside[k % per_pixel], {}) : kNobody;
@@ -121,7 +120,7 @@ void trace_batch(const EdgeFrame& frame, const EdgeBatch& batch, GuideWorkspace&
     if (hit_count == 0) {
       continue;
     }
-    place_first_hits<kFeatures>(guide, hit_count, work);
+    place_first_hits(guide, hit_count, work);
     for (std::size_t i = 0; i < hit_count; ++i) {
       const std::size_t k = chunk.path[i];
       const ShadingMaterial& material = guide.scene.materials[chunk.material[i]];
@@ -130,7 +129,7 @@ void trace_batch(const EdgeFrame& frame, const EdgeBatch& batch, GuideWorkspace&
         continue;
       }
       EdgeHit hit;
-      hit.object = 1 + scene_instance_of<kFeatures>(guide.scene, work.hits, k, chunk, i);
+      hit.object = 1 + scene_instance_of(guide.scene, work.hits, k, chunk, i);
       hit.material = 1 + chunk.material[i];
       hit.smooth = smooth_normal(chunk, i);
       hit.plane_normal = chunk.geometric.get(i);
@@ -143,15 +142,15 @@ void trace_batch(const EdgeFrame& frame, const EdgeBatch& batch, GuideWorkspace&
   std::size_t hit_count = 0;
   const auto shade = [&] {
     if (hit_count > 0) {
-      place_first_hits<kFeatures>(guide, hit_count, work);
-      shade_first_hits<kFeatures, kLayers>(guide, hit_count, work);
+      place_first_hits(guide, hit_count, work);
+      shade_first_hits(guide, hit_count, work);
     }
     hit_count = 0;
   };
   for (std::size_t k = 0; k < count; ++k) {
     if (rays[k].seen_by == kNobody) {
       if (is_hit(work.hits, k)) {
-        locate_hit<kFeatures>(guide.scene, work.hits, k, chunk, hit_count++);
+        locate_hit(guide.scene, work.hits, k, chunk, hit_count++);
       } else {
         work.found[k] = first_miss(guide, work, k);
       }
@@ -162,8 +161,6 @@ void trace_batch(const EdgeFrame& frame, const EdgeBatch& batch, GuideWorkspace&
   }
   shade();
 }
-
-using TraceBatch = void (*)(const EdgeFrame&, const EdgeBatch&, GuideWorkspace&);
 
 // Keeps the rays of a finished batch, except those of pixels all of whose rays see what the centre sees.
 void keep(const EdgeFrame& frame, const EdgeBatch& batch, const GuideWorkspace& work) {
@@ -194,12 +191,12 @@ void keep(const EdgeFrame& frame, const EdgeBatch& batch, const GuideWorkspace& 
   rows.rays.resize(end);
 }
 
-EdgeRows trace_rows(const EdgeFrame& frame, TraceBatch trace, int y0, int y1, GuideWorkspace& work) {
+EdgeRows trace_rows(const EdgeFrame& frame, int y0, int y1, GuideWorkspace& work) {
   EdgeRows out;
   const auto per_pixel = static_cast<std::uint32_t>(frame.guide.settings.edge_rays);
   const auto flush = [&] {
     const EdgeBatch batch{out.rays.size() - work.count, out};
-    trace(frame, batch, work);
+    trace_batch(frame, batch, work);
     keep(frame, batch, work);
   };
   CrossedPixels pixels(frame.guides, frame.smooth, y0);
@@ -239,16 +236,13 @@ void trace_edges(const GuideFrame& frame, const Image<RoughNormal>& smooth, Guid
   const Vec3f& step = guides.camera.up_step;
   const EdgeFrame edge_frame{frame, smooth, guides, std::sqrt(dot(step, step)),
                              points_in_pixel(frame.settings.edge_rays)};
-  const auto trace = guide_variant<TraceBatch>(
-      frame.scene, frame.settings.diffuse,
-      []<KernelFeatures kFeatures, bool kLayers>() { return trace_batch<kFeatures, kLayers>; });
   std::vector<EdgeRows> tasks(static_cast<std::size_t>((frame.height_px + kRowsPerTask - 1) / kRowsPerTask));
   parallel_for(tasks.size(), threads, [&](std::size_t t) {
     const FlushDenormals flush;
     const auto work = std::make_unique<GuideWorkspace>();
     work->found.resize(kBatchSize);
     const int y0 = static_cast<int>(t) * kRowsPerTask;
-    tasks[t] = trace_rows(edge_frame, trace, y0, std::min(y0 + kRowsPerTask, frame.height_px), *work);
+    tasks[t] = trace_rows(edge_frame, y0, std::min(y0 + kRowsPerTask, frame.height_px), *work);
   });
   std::size_t ray_count = 0;
   for (const EdgeRows& rows : tasks) {

@@ -94,8 +94,7 @@ inline FirstHit first_miss(const GuideFrame& frame, const GuideWorkspace& work, 
 }
 
 // Finds the triangles, positions and unbumped normals of the `count` hits that were located in work.chunk.
-template <KernelFeatures kFeatures>
-void place_first_hits(const GuideFrame& frame, std::size_t count, GuideWorkspace& work) {
+inline void place_first_hits(const GuideFrame& frame, std::size_t count, GuideWorkspace& work) {
   ChunkHits& chunk = work.chunk;
   const auto cone = static_cast<float>(frame.settings.pixel_cone);
   for (std::size_t i = 0; i < count; ++i) {
@@ -107,8 +106,8 @@ void place_first_hits(const GuideFrame& frame, std::size_t count, GuideWorkspace
     chunk.cone_width[i] = frame.camera.cone_width() * cone;
     chunk.cone_spread[i] = work.cone_spread[k];
   }
-  gather_triangles<kFeatures>(frame.scene, work.rays.time, chunk, count);
-  place_hits<kFeatures>(chunk, count);
+  gather_triangles(frame.scene, work.rays.time, chunk, count);
+  place_hits(chunk, count);
 }
 
 // Call it after place_first_hits and before normals are finished.
@@ -116,55 +115,46 @@ inline RoughNormal smooth_normal(const ChunkHits& chunk, std::size_t i) {
   return rough_normal(chunk.shading.get(i) * chunk.side[i]);
 }
 
-template <KernelFeatures kFeatures, bool kLayers>
-FirstHit first_hit(const GuideFrame& frame, const HitBatch& hits, const ChunkHits& chunk, std::size_t i) {
+// The ideal Lambertian model has no layers.
+inline bool has_layers(const GuideFrame& frame) {
+  return frame.scene.features.layers.any() && frame.settings.diffuse != DiffuseModel::matte;
+}
+
+inline FirstHit first_hit(const GuideFrame& frame, const HitBatch& hits, const ChunkHits& chunk, std::size_t i) {
   const RenderScene& scene = frame.scene;
   const ShadingMaterial& material = scene.materials[chunk.material[i]];
   FirstHit hit;
   hit.albedo = albedo_to_divide_by(scene, chunk, i, frame.settings.diffuse);
   hit.normal = chunk.shading.get(i);
   hit.depth_m = chunk.t[i] * dot(chunk.direction.get(i), frame.camera.forward());
-  hit.object = 1 + scene_instance_of<kFeatures>(scene, hits, chunk.path[i], chunk, i);
+  hit.object = 1 + scene_instance_of(scene, hits, chunk.path[i], chunk, i);
   hit.material = 1 + chunk.material[i];
   hit.kind = kind_of_hit(scene, chunk, i, frame.settings.diffuse);
   if (material.unlit) {
     hit.emission = chunk.base_color.get(i);
   } else if (material.emissive && (chunk.side[i] > 0 || material.double_sided)) {
-    hit.emission = emitted_radiance<kFeatures, kLayers>(scene, chunk, i, material);
+    hit.emission = emitted_radiance(scene, chunk, i, material, has_layers(frame));
   }
   return hit;
 }
 
 // Shades the hits of work.chunk and stores them in work.found at their rays' places. Call it after place_first_hits.
-template <KernelFeatures kFeatures, bool kLayers>
-void shade_first_hits(const GuideFrame& frame, std::size_t count, GuideWorkspace& work) {
+inline void shade_first_hits(const GuideFrame& frame, std::size_t count, GuideWorkspace& work) {
   ChunkHits& chunk = work.chunk;
-  read_materials<kFeatures>(frame.scene, chunk, count);
-  if constexpr (kLayers) {
+  read_materials(frame.scene, chunk, count);
+  if (has_layers(frame)) {
     chunk.smooth = chunk.shading;
   }
   std::array<RoughNormal, kChunk> smooth;
   for (std::size_t i = 0; i < count; ++i) {
     smooth[i] = smooth_normal(chunk, i);
   }
-  finish_normals<kFeatures>(chunk, count);
+  finish_normals(chunk, count);
   for (std::size_t i = 0; i < count; ++i) {
     FirstHit& hit = work.found[work.place[chunk.path[i]]];
-    hit = first_hit<kFeatures, kLayers>(frame, work.hits, chunk, i);
+    hit = first_hit(frame, work.hits, chunk, i);
     hit.smooth = smooth[i];
   }
-}
-
-// Calls choose.operator()<features, layers>() with the smallest set of features that covers the scene.
-template <class Function, class Choose>
-Function guide_variant(const RenderScene& scene, DiffuseModel diffuse, const Choose& choose) {
-  constexpr KernelFeatures kTextured{.textures = true};
-  constexpr KernelFeatures kInstanced{.textures = true, .instances = true, .extras = true};
-  if (scene.features.layers.any() && diffuse != DiffuseModel::matte) {
-    return choose.template operator()<kInstanced, true>();
-  }
-  return scene.instances.empty() && scene.extras.empty() ? choose.template operator()<kTextured, false>()
-                                                         : choose.template operator()<kInstanced, false>();
 }
 
 }  // namespace gazetrace

@@ -22,7 +22,6 @@ static_assert(kTilePx * kTilePx == kBatchSize);
 constexpr int kMostRays = 64;
 
 // Traces the rays that were added, and stores what they see in work.found at their places.
-template <KernelFeatures kFeatures, bool kLayers>
 void trace_rays(const GuideFrame& frame, GuideWorkspace& work) {
   const std::size_t count = std::exchange(work.count, 0);
   intersect_rays(frame, count, work);
@@ -30,22 +29,20 @@ void trace_rays(const GuideFrame& frame, GuideWorkspace& work) {
     std::size_t hit_count = 0;
     for (std::size_t k = begin; k < std::min(begin + kChunk, count); ++k) {
       if (is_hit(work.hits, k)) {
-        locate_hit<kFeatures>(frame.scene, work.hits, k, work.chunk, hit_count++);
+        locate_hit(frame.scene, work.hits, k, work.chunk, hit_count++);
       } else {
         work.found[work.place[k]] = first_miss(frame, work, k);
       }
     }
     if (hit_count > 0) {
-      place_first_hits<kFeatures>(frame, hit_count, work);
-      shade_first_hits<kFeatures, kLayers>(frame, hit_count, work);
+      place_first_hits(frame, hit_count, work);
+      shade_first_hits(frame, hit_count, work);
     }
   }
 }
 
-using TraceRays = void (*)(const GuideFrame&, GuideWorkspace&);
-
 // Traces ray `sample` of every pixel of the tile whose corner is (x0, y0).
-void trace_tile(const GuideFrame& frame, TraceRays trace, int x0, int y0, std::uint32_t sample, GuideWorkspace& work) {
+void trace_tile(const GuideFrame& frame, int x0, int y0, std::uint32_t sample, GuideWorkspace& work) {
   const auto spp = static_cast<std::size_t>(frame.settings.spp);
   for (std::uint32_t i = 0; i < kBatchSize; ++i) {
     const PixelIndex at = place_on_curve(i);
@@ -62,7 +59,7 @@ void trace_tile(const GuideFrame& frame, TraceRays trace, int x0, int y0, std::u
     add_ray(frame, from_center(frame, x, y, inside), x, y, sample,
             static_cast<std::size_t>(at.y * kTilePx + at.x) * spp + sample, work);
   }
-  trace(frame, work);
+  trace_rays(frame, work);
 }
 
 struct Identity {
@@ -129,12 +126,6 @@ void store_mean(const FirstHit* hits, std::size_t spp, std::size_t pixel, Guides
   smooth = hits[0].smooth;
 }
 
-// The smallest variant that covers the features of the scene.
-TraceRays choose_variant(const RenderScene& scene, DiffuseModel diffuse) {
-  return guide_variant<TraceRays>(
-      scene, diffuse, []<KernelFeatures kFeatures, bool kLayers>() { return trace_rays<kFeatures, kLayers>; });
-}
-
 }  // namespace
 
 void check_guides(const GuideSettings& settings) {
@@ -166,7 +157,6 @@ Guides trace_guides(const RenderScene& scene, const LightSampler& lights, const 
   Image<RoughNormal> smooth(width_px, height_px);
 
   const GuideFrame frame{scene, lights, camera, settings, width_px, height_px};
-  const TraceRays trace = choose_variant(scene, settings.diffuse);
   const auto spp = static_cast<std::size_t>(settings.spp);
   const int tiles_x = (width_px + kTilePx - 1) / kTilePx;
   const int tiles_y = (height_px + kTilePx - 1) / kTilePx;
@@ -178,7 +168,7 @@ Guides trace_guides(const RenderScene& scene, const LightSampler& lights, const 
     const int y0 = static_cast<int>(tile_y) * kTilePx;
     for (int x0 = 0; x0 < tiles_x * kTilePx; x0 += kTilePx) {
       for (std::uint32_t sample = 0; sample < spp; ++sample) {
-        trace_tile(frame, trace, x0, y0, sample, *work);
+        trace_tile(frame, x0, y0, sample, *work);
       }
       for (int y = y0; y < std::min(y0 + kTilePx, height_px); ++y) {
         for (int x = x0; x < std::min(x0 + kTilePx, width_px); ++x) {

@@ -12,12 +12,11 @@
 
 namespace gazetrace {
 
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::add_emission(int vertex, std::size_t i, std::size_t slot,
-                                                          const Vec3f& throughput, const ShadingMaterial& material,
-                                                          float pdf_bsdf) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::add_emission(int vertex, std::size_t i, std::size_t slot, const Vec3f& throughput,
+                                              const ShadingMaterial& material, float pdf_bsdf) {
   const ChunkHits& chunk = work_.chunk;
-  const Vec3f emission = emitted_radiance<kFeatures, kLayers>(*frame_.scene, chunk, i, material);
+  const Vec3f emission = emitted_radiance(*frame_.scene, chunk, i, material, has_layers());
   float weight = 1;
   if (vertex > 0) {
     float pdf_light = 0;
@@ -36,18 +35,16 @@ inline void PathKernel<kFeatures, kDiffuse>::add_emission(int vertex, std::size_
   add(slot, clamped(vertex, throughput * emission * weight), vertex);
 }
 
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline std::uint32_t PathKernel<kFeatures, kDiffuse>::emitter_of(std::size_t i) const {
+template <bool kLayers>
+inline std::uint32_t PathKernel<kLayers>::emitter_of(std::size_t i) const {
   const RenderScene& scene = *frame_.scene;
   const std::size_t k = work_.chunk.path[i];
   std::uint32_t record = work_.hits.geometry[k];
   std::uint32_t scene_instance = kNoId;
-  if constexpr (kFeatures.instances) {
-    if (work_.chunk.instance[i] != kNoId) {
-      const ShadingInstance& instance = scene.instances[work_.chunk.instance[i]];
-      record += instance.first_geometry;
-      scene_instance = instance.scene_instance;
-    }
+  if (work_.chunk.instance[i] != kNoId) {
+    const ShadingInstance& instance = scene.instances[work_.chunk.instance[i]];
+    record += instance.first_geometry;
+    scene_instance = instance.scene_instance;
   }
   const GeometryRecord& geometry = scene.geometries[record];
   scene_instance = scene_instance == kNoId ? geometry.scene_instance : scene_instance;
@@ -56,49 +53,47 @@ inline std::uint32_t PathKernel<kFeatures, kDiffuse>::emitter_of(std::size_t i) 
 
 // A light sample on a textured emitter has its position instead of the texture's value, which is read here. Emission of
 // alpha-masked or blended emitters is weighted by their coverage, since rays that look for them pass the rest.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline Vec3f PathKernel<kFeatures, kDiffuse>::light_radiance(const LightSample& light) const {
-  if constexpr (kFeatures.emission) {
-    if (light.emitter != kNoEmitter) {
-      const EmissiveTriangle& emitter = frame_.lights->triangle(light.emitter);
-      const ShadingMaterial& material = frame_.scene->materials[static_cast<std::size_t>(emitter.material)];
-      Vec3f radiance = light.radiance;
-      if (material.emit.texture != nullptr) {
-        const Vec2f at = place_on_emitter(emitter, material.emit, light.barycentric);
-        const Vec4f c = read_texture(*material.emit.texture, at.x, at.y, 0.0F);
-        radiance *= Vec3f{c.x, c.y, c.z};
-      }
-      if constexpr (kLayers) {
-        const LayeredMaterial* layers = frame_.scene->layered.of(static_cast<std::uint32_t>(emitter.material));
-        if (layers != nullptr && layers->layers.clearcoat) {
-          float coat = layers->source->clearcoat.factor;
-          if (layers->clearcoat.texture != nullptr) {
-            const Vec2f at = place_on_emitter(emitter, layers->clearcoat, light.barycentric);
-            coat *= read_texture(*layers->clearcoat.texture, at.x, at.y, 0.0F).x;
-          }
-          radiance *= passes_coat(coat, dot(emitter.normal, light.direction));
-        }
-      }
-      if (material.alpha_mode != AlphaMode::opaque) {
-        radiance = radiance * coverage_of_emitter(emitter, material, light.barycentric);
-      }
-      return radiance;
+template <bool kLayers>
+inline Vec3f PathKernel<kLayers>::light_radiance(const LightSample& light) const {
+  if (light.emitter != kNoEmitter) {
+    const EmissiveTriangle& emitter = frame_.lights->triangle(light.emitter);
+    const ShadingMaterial& material = frame_.scene->materials[static_cast<std::size_t>(emitter.material)];
+    Vec3f radiance = light.radiance;
+    if (material.emit.texture != nullptr) {
+      const Vec2f at = place_on_emitter(emitter, material.emit, light.barycentric);
+      const Vec4f c = read_texture(*material.emit.texture, at.x, at.y, 0.0F);
+      radiance *= Vec3f{c.x, c.y, c.z};
     }
+    if (has_layers()) {
+      const LayeredMaterial* layers = frame_.scene->layered.of(static_cast<std::uint32_t>(emitter.material));
+      if (layers != nullptr && layers->layers.clearcoat) {
+        float coat = layers->source->clearcoat.factor;
+        if (layers->clearcoat.texture != nullptr) {
+          const Vec2f at = place_on_emitter(emitter, layers->clearcoat, light.barycentric);
+          coat *= read_texture(*layers->clearcoat.texture, at.x, at.y, 0.0F).x;
+        }
+        radiance *= passes_coat(coat, dot(emitter.normal, light.direction));
+      }
+    }
+    if (material.alpha_mode != AlphaMode::opaque) {
+      radiance = radiance * coverage_of_emitter(emitter, material, light.barycentric);
+    }
+    return radiance;
   }
   return light.radiance;
 }
 
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline const Geometry& PathKernel<kFeatures, kDiffuse>::geometry_of(const EmissiveTriangle& emitter) const {
+template <bool kLayers>
+inline const Geometry& PathKernel<kLayers>::geometry_of(const EmissiveTriangle& emitter) const {
   const Instance& instance = frame_.source->instances[static_cast<std::size_t>(emitter.instance)];
   return frame_.source->meshes[static_cast<std::size_t>(instance.mesh)]
       .geometries[static_cast<std::size_t>(emitter.geometry)];
 }
 
 // The texture coordinates of a point on an emitter; (0, 0) where the triangle has none.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline Vec2f PathKernel<kFeatures, kDiffuse>::place_on_emitter(const EmissiveTriangle& emitter,
-                                                               const ShadingTexture& texture, const Vec2f& at) const {
+template <bool kLayers>
+inline Vec2f PathKernel<kLayers>::place_on_emitter(const EmissiveTriangle& emitter, const ShadingTexture& texture,
+                                                   const Vec2f& at) const {
   const Geometry& geometry = geometry_of(emitter);
   const auto& corner = geometry.triangles[static_cast<std::size_t>(emitter.primitive)];
   const std::vector<Vec2f>& set = texture.uv_set == 1 ? geometry.uv1 : geometry.uv0;
@@ -113,10 +108,9 @@ inline Vec2f PathKernel<kFeatures, kDiffuse>::place_on_emitter(const EmissiveTri
 }
 
 // The share of rays that RenderScene::transparent stops at this point.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline float PathKernel<kFeatures, kDiffuse>::coverage_of_emitter(const EmissiveTriangle& emitter,
-                                                                  const ShadingMaterial& material,
-                                                                  const Vec2f& at) const {
+template <bool kLayers>
+inline float PathKernel<kLayers>::coverage_of_emitter(const EmissiveTriangle& emitter, const ShadingMaterial& material,
+                                                      const Vec2f& at) const {
   const Geometry& geometry = geometry_of(emitter);
   float alpha = material.base_color.w;
   if (material.base.texture != nullptr) {

@@ -6,8 +6,8 @@
 
 namespace gazetrace {
 
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::start(int count) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::start(int count) {
   RayBatch& rays = work_.rays[0];
   PathBatch& paths = work_.paths[0];
   const CameraRays& camera = *frame_.camera;
@@ -39,7 +39,7 @@ inline void PathKernel<kFeatures, kDiffuse>::start(int count) {
       begin_path(i, camera.ray(work_.samples.x[i], work_.samples.y[i]));
     }
   }
-  if constexpr (kLayers) {
+  if (has_layers()) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       paths.body[i] = kNoId;
     }

@@ -6,22 +6,20 @@
 // variance in San Miguel and Lost Empire (tests/benchmarks/book/light.md).
 #pragma once
 
-#include <algorithm>
-
 #include "trace/guiding/learned_light.hpp"
 #include "trace/kernel/path_kernel.hpp"
 
 namespace gazetrace {
 
 // Finds the cells of hits, and how much of the choice their tables have. Layered materials choose by themselves.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::find_cells(std::size_t count) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::find_cells(std::size_t count) {
   ChunkHits& chunk = work_.chunk;
   const LearnedLight& learned = *frame_.learned;
   for (std::size_t i = 0; i < count; ++i) {
     chunk.cell[i] = learned.cell_at(chunk.position.get(i), chunk.shading.get(i));
     chunk.table_share[i] = chunk.cell[i] < 0 ? 0.0F : learned.share(chunk.cell[i]);
-    if constexpr (kLayers) {
+    if (has_layers()) {
       if (frame_.scene->layered.of(chunk.material[i]) != nullptr) {
         chunk.table_share[i] = 0;
       }
@@ -29,37 +27,9 @@ inline void PathKernel<kFeatures, kDiffuse>::find_cells(std::size_t count) {
   }
 }
 
-// Takes the number that chooses a lobe as the choice between table and BSDF first, and replaces the BSDF's direction,
-// in the local frame, where the table was chosen. Call it between finding the share of the diffuse lobe and sampling.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::choose_tables(ChunkHits& chunk, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const float share = chunk.table_share[i];
-    const float u = chunk.random_lobe[i];
-    chunk.by_table[i] = u < share ? 1 : 0;
-    if (share > 0 && !(u < share)) {
-      chunk.random_lobe[i] = std::min((u - share) / (1.0F - share), 0x1.fffffep-1F);
-    }
-  }
-}
-
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::take_directions_of_tables(ChunkHits& chunk, std::size_t count,
-                                                                       const LearnedLight& learned) {
-  for (std::size_t i = 0; i < count; ++i) {
-    if (chunk.by_table[i] != 0) {
-      const Vec3f world = learned.table(chunk.cell[i]).sample(chunk.random.get(i)).direction;
-      const Vec3f direction = LocalFrame(chunk.shading.get(i)).to_local(world);
-      const Vec3f middle = chunk.view.get(i) + direction;
-      chunk.next.set(i, direction);
-      chunk.half.set(i, middle * (1.0F / std::sqrt(std::max(dot(middle, middle), 1e-20F))));
-    }
-  }
-}
-
 // Densities and weights of the mixture, after the BSDF has been evaluated towards both directions.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::mix_densities(std::size_t count, const LightSample* lights, bool bounces) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::mix_densities(std::size_t count, const LightSample* lights, bool bounces) {
   ChunkHits& chunk = work_.chunk;
   for (std::size_t i = 0; i < count; ++i) {
     const float share = chunk.table_share[i];

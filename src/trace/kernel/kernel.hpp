@@ -14,15 +14,6 @@
 
 namespace gazetrace {
 
-// What a kernel variant can handle beyond plain triangles with constant materials under any light.
-struct KernelFeatures {
-  bool textures = false;   // textures of colour, roughness and normals
-  bool instances = false;  // hits inside shared meshes
-  bool emission = false;   // surfaces that emit: emissive triangles and unlit materials
-  bool extras = false;     // vertex colours, textures with coordinates of their own
-  bool layers = false;     // materials with extensions: lobes beyond metallic-roughness, transmitting bodies
-};
-
 struct FrameContext {
   const Scene* source = nullptr;
   const RenderScene* scene = nullptr;
@@ -52,20 +43,11 @@ using Kernel = void (*)(const FrameContext&, Workspace&, int count, KernelCounts
 
 struct NamedKernel {
   const char* name;
-  KernelFeatures features;
-  Kernel burley, lambert, matte;
+  Kernel run;
 };
 
-KernelFeatures kernel_features(const SceneFeatures& features, const RenderScene& scene);
-// The smallest variant that covers the features, or with `all` the last one, which covers everything.
-const NamedKernel& choose_kernel(const KernelFeatures& features, bool all);
-// All variants, smallest first.
-struct KernelList {
-  const NamedKernel* begin_;
-  const NamedKernel* end_;
-  [[nodiscard]] const NamedKernel* begin() const { return begin_; }
-  [[nodiscard]] const NamedKernel* end() const { return end_; }
-};
-KernelList kernels();
+// Without the code of materials with extensions where the scene has none; with `all`, or where it has some, the variant
+// that covers everything. Leaving out other code (textures, instances, emission, vertex colors) gains less than 2 %.
+const NamedKernel& choose_kernel(const RenderScene& scene, bool all);
 
 }  // namespace gazetrace

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-
 #include "trace/kernel/emission.hpp"
 #include "trace/kernel/generate.hpp"
 #include "trace/kernel/guided.hpp"
@@ -13,32 +11,6 @@
 #include "trace/kernel/sky.hpp"
 
 namespace gazetrace {
-namespace {
-
-template <KernelFeatures kFeatures>
-constexpr NamedKernel named(const char* name) {
-  return {name, kFeatures, PathKernel<kFeatures, DiffuseModel::burley>::run,
-          PathKernel<kFeatures, DiffuseModel::lambert>::run, PathKernel<kFeatures, DiffuseModel::matte>::run};
-}
-
-constexpr KernelFeatures kPlain{};
-constexpr KernelFeatures kTextured{.textures = true};
-constexpr KernelFeatures kInstanced{.textures = true, .instances = true};
-constexpr KernelFeatures kUnlayered{.textures = true, .instances = true, .emission = true, .extras = true};
-constexpr KernelFeatures kAll{.textures = true, .instances = true, .emission = true, .extras = true, .layers = true};
-
-// "unlayered" covers everything but materials with extensions.
-constexpr std::array kKernels{named<kPlain>("plain"), named<kTextured>("textured"),
-                              named<kInstanced>("textured, instanced"), named<kUnlayered>("unlayered"),
-                              named<kAll>("all")};
-
-constexpr bool covers(const KernelFeatures& kernel, const KernelFeatures& scene) {
-  return (kernel.textures || !scene.textures) && (kernel.instances || !scene.instances) &&
-         (kernel.emission || !scene.emission) && (kernel.extras || !scene.extras) && (kernel.layers || !scene.layers);
-}
-
-}  // namespace
-
 FrameContext make_frame_context(const Scene& scene, const RenderScene& render_scene, const LightSampler& lights,
                                 const CameraRays& camera, const TraceSettings& settings) {
   FrameContext context;
@@ -58,25 +30,10 @@ FrameContext make_frame_context(const Scene& scene, const RenderScene& render_sc
   return context;
 }
 
-KernelFeatures kernel_features(const SceneFeatures& features, const RenderScene& scene) {
-  return {.textures = features.textures || features.normal_maps,
-          .instances = !scene.instances.empty(),
-          .emission = features.emissive_triangles || features.unlit,
-          .extras = !scene.extras.empty(),
-          .layers = features.layers.any()};
-}
-
-KernelList kernels() {
-  return {kKernels.data(), kKernels.data() + kKernels.size()};
-}
-
-const NamedKernel& choose_kernel(const KernelFeatures& features, bool all) {
-  for (const NamedKernel& kernel : kKernels) {
-    if (!all && covers(kernel.features, features)) {
-      return kernel;
-    }
-  }
-  return kKernels.back();
+const NamedKernel& choose_kernel(const RenderScene& scene, bool all) {
+  static constexpr NamedKernel kUnlayered{"unlayered", PathKernel<false>::run};
+  static constexpr NamedKernel kAll{"all", PathKernel<true>::run};
+  return all || scene.features.layers.any() ? kAll : kUnlayered;
 }
 
 }  // namespace gazetrace

@@ -7,6 +7,7 @@
 #include "material/layered_surface.hpp"
 #include "material/lobes/dielectric.hpp"
 #include "material/local_frame.hpp"
+#include "trace/kernel/shading_frame.hpp"
 #include "trace/kernel/surface_hit.hpp"
 #include "trace/scene/layered_material.hpp"
 
@@ -17,21 +18,21 @@ struct LayeredHit {
   LocalFrame frame;
 };
 
-template <KernelFeatures kFeatures>
-Vec4f read_layer(const RenderScene& scene, const ChunkHits& chunk, std::size_t i, const ShadingTexture& texture) {
+inline Vec4f read_layer(const RenderScene& scene, const ChunkHits& chunk, std::size_t i,
+                        const ShadingTexture& texture) {
   if (texture.texture == nullptr) {
     return {1, 1, 1, 1};
   }
-  const Vec2f at = coordinates_at<kFeatures>(scene, chunk, i, texture);
-  return read_texture(*texture.texture, at.x, at.y, level_at<kFeatures>(scene, chunk, i, texture));
+  const Vec2f at = coordinates_at(scene, chunk, i, texture);
+  return read_texture(*texture.texture, at.x, at.y, level_at(scene, chunk, i, texture));
 }
 
 // The coat's normal on the viewer's side: the interpolated normal, bumped by the coat's own normal map if it has one.
-template <KernelFeatures kFeatures>
-Vec3f coat_normal(const RenderScene& scene, const ChunkHits& chunk, std::size_t i, const LayeredMaterial& material) {
+inline Vec3f coat_normal(const RenderScene& scene, const ChunkHits& chunk, std::size_t i,
+                         const LayeredMaterial& material) {
   Vec3f normal = chunk.smooth.get(i);
   if (material.clearcoat_normal.texture != nullptr) {
-    const Vec4f texel = read_layer<kFeatures>(scene, chunk, i, material.clearcoat_normal);
+    const Vec4f texel = read_layer(scene, chunk, i, material.clearcoat_normal);
     const float scale = material.source->clearcoat.normal_scale;
     const LocalFrame frame = LocalFrame::along(normal, chunk.tangent.get(i));
     const Vec3f across = cross(normal, frame.s) * chunk.bitangent_sign[i];
@@ -44,11 +45,10 @@ Vec3f coat_normal(const RenderScene& scene, const ChunkHits& chunk, std::size_t 
 }
 
 // `channel` is the one whose index of refraction is used.
-template <KernelFeatures kFeatures>
-LayeredHit read_layered_hit(const RenderScene& scene, const ChunkHits& chunk, std::size_t i,
-                            const LayeredMaterial& material, std::size_t channel) {
+inline LayeredHit read_layered_hit(const RenderScene& scene, const ChunkHits& chunk, std::size_t i,
+                                   const LayeredMaterial& material, std::size_t channel) {
   const Material& from = *material.source;
-  const auto read = [&](const ShadingTexture& texture) { return read_layer<kFeatures>(scene, chunk, i, texture); };
+  const auto read = [&](const ShadingTexture& texture) { return read_layer(scene, chunk, i, texture); };
   const auto rgb = [](const Vec4f& c) { return Vec3f{c.x, c.y, c.z}; };
   const Vec3f shading = chunk.shading.get(i);
   LayeredHit hit{{}, LocalFrame(shading)};
@@ -103,7 +103,7 @@ LayeredHit read_layered_hit(const RenderScene& scene, const ChunkHits& chunk, st
     s.clearcoat = from.clearcoat.factor * read(material.clearcoat).x;
     s.clearcoat_roughness = from.clearcoat.roughness * read(material.clearcoat_roughness).y;
     if (material.coat_is_apart && s.clearcoat > 0) {
-      const Vec3f local = hit.frame.to_local(coat_normal<kFeatures>(scene, chunk, i, material));
+      const Vec3f local = hit.frame.to_local(coat_normal(scene, chunk, i, material));
       const bool seen = dot(hit.frame.to_world(local), chunk.direction.get(i)) < 0;
       s.clearcoat_normal = seen ? local : s.clearcoat_normal;
     }

@@ -19,8 +19,8 @@
 namespace gazetrace {
 
 // Applies absorption on the way to each hit of the chunk to the throughput.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::absorb(int vertex, std::size_t count) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::absorb(int vertex, std::size_t count) {
   const ChunkHits& chunk = work_.chunk;
   PathBatch& paths = work_.paths[static_cast<std::size_t>(vertex & 1)];
   const LayeredMaterials& layered = frame_.scene->layered;
@@ -41,8 +41,8 @@ inline void PathKernel<kFeatures, kDiffuse>::absorb(int vertex, std::size_t coun
 }
 
 // The channel whose index of refraction a path uses; the throughput of the other channels is set to 0.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline std::size_t PathKernel<kFeatures, kDiffuse>::choose_channel(int vertex, std::size_t k) {
+template <bool kLayers>
+inline std::size_t PathKernel<kLayers>::choose_channel(int vertex, std::size_t k) {
   PathBatch& paths = work_.paths[static_cast<std::size_t>(vertex & 1)];
   const std::array<float*, 3> throughput{&paths.r[k], &paths.g[k], &paths.b[k]};
   std::size_t alive = 0;
@@ -65,9 +65,8 @@ inline std::size_t PathKernel<kFeatures, kDiffuse>::choose_channel(int vertex, s
 }
 
 // The body that a ray is in after it leaves hit i, on the other side of the surface or not.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline std::uint32_t PathKernel<kFeatures, kDiffuse>::body_after(std::size_t i, const PathBatch& paths,
-                                                                 bool through) const {
+template <bool kLayers>
+inline std::uint32_t PathKernel<kLayers>::body_after(std::size_t i, const PathBatch& paths, bool through) const {
   const ChunkHits& chunk = work_.chunk;
   const std::uint32_t own = frame_.scene->layered.index[chunk.material[i]];
   const std::uint32_t before = paths.body[chunk.path[i]];
@@ -79,10 +78,9 @@ inline std::uint32_t PathKernel<kFeatures, kDiffuse>::body_after(std::size_t i, 
 }
 
 // Does what evaluate_lanes does, for those lanes of `active` whose material has layers.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::scatter_layers(int vertex, const std::uint16_t* active,
-                                                            std::size_t active_count, const LightSample* lights,
-                                                            bool bounces) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::scatter_layers(int vertex, const std::uint16_t* active, std::size_t active_count,
+                                                const LightSample* lights, bool bounces) {
   ChunkHits& chunk = work_.chunk;
   const RenderScene& scene = *frame_.scene;
   for (std::size_t a = 0; a < active_count; ++a) {
@@ -92,9 +90,9 @@ inline void PathKernel<kFeatures, kDiffuse>::scatter_layers(int vertex, const st
       continue;
     }
     const std::size_t channel = material->layers.dispersion ? choose_channel(vertex, chunk.path[i]) : 0;
-    const LayeredHit hit = read_layered_hit<kFeatures>(scene, chunk, i, *material, channel);
+    const LayeredHit hit = read_layered_hit(scene, chunk, i, *material, channel);
     const Vec3f geometric = chunk.geometric.get(i);
-    const LayeredBsdf<kDiffuse> bsdf(hit.surface, hit.frame.to_local(-chunk.direction.get(i)));
+    const LayeredBsdf bsdf(hit.surface, hit.frame.to_local(-chunk.direction.get(i)), frame_.settings.diffuse);
     // The shading normal and the geometric normal must agree on the side of a direction.
     const auto agree = [&](const Vec3f& local, const Vec3f& world) { return local.z * dot(world, geometric) > 0; };
     if (lights != nullptr) {

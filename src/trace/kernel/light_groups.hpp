@@ -8,15 +8,16 @@
 #include <cstdint>
 
 #include "material/layered_bsdf.hpp"
+#include "trace/kernel/bsdf_lanes.hpp"
 #include "trace/kernel/layered_hit.hpp"
 #include "trace/kernel/path_kernel.hpp"
 #include "trace/kernel/shading_frame.hpp"
 
 namespace gazetrace {
 
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-void PathKernel<kFeatures, kDiffuse>::add_to_groups(std::size_t slot, const Vec3f& radiance, int events,
-                                                    LightGroup seen, const Vec3f& diffuse) {
+template <bool kLayers>
+void PathKernel<kLayers>::add_to_groups(std::size_t slot, const Vec3f& radiance, int events, LightGroup seen,
+                                        const Vec3f& diffuse) {
   const auto add_part = [&](LightGroup group, const Vec3f& part) {
     BatchVec3& sum = work_.groups.radiance[static_cast<std::size_t>(group)];
     sum.set(slot, sum.get(slot) + part);
@@ -31,9 +32,9 @@ void PathKernel<kFeatures, kDiffuse>::add_to_groups(std::size_t slot, const Vec3
 }
 
 // For the hits of camera rays, after their BSDFs were evaluated and sampled.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-void PathKernel<kFeatures, kDiffuse>::find_diffuse_shares(const std::uint16_t* active, std::size_t active_count,
-                                                          const LightSample* lights, bool bounces) {
+template <bool kLayers>
+void PathKernel<kLayers>::find_diffuse_shares(const std::uint16_t* active, std::size_t active_count,
+                                              const LightSample* lights, bool bounces) {
   ChunkHits& chunk = work_.chunk;
   for (std::size_t a = 0; a < active_count; ++a) {
     const std::size_t i = active[a];
@@ -48,9 +49,10 @@ void PathKernel<kFeatures, kDiffuse>::find_diffuse_shares(const std::uint16_t* a
 
 // Of the light that hit i sends from a direction to the camera, the share of the diffuse lobe in each channel. Where
 // refraction depends on colour, that of the first channel's index.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline Vec3f PathKernel<kFeatures, kDiffuse>::diffuse_share(std::size_t i, const Vec3f& world) const {
-  if constexpr (kDiffuse == DiffuseModel::matte) {
+template <bool kLayers>
+inline Vec3f PathKernel<kLayers>::diffuse_share(std::size_t i, const Vec3f& world) const {
+  const DiffuseModel diffuse = frame_.settings.diffuse;
+  if (diffuse == DiffuseModel::matte) {
     return {1, 1, 1};
   }
   const ChunkHits& chunk = work_.chunk;
@@ -58,19 +60,19 @@ inline Vec3f PathKernel<kFeatures, kDiffuse>::diffuse_share(std::size_t i, const
     const auto of = [](float p, float w) { return w > 0 ? std::clamp(p / w, 0.0F, 1.0F) : 0.0F; };
     return Vec3f{of(part.x, whole.x), of(part.y, whole.y), of(part.z, whole.z)};
   };
-  if constexpr (kLayers) {
+  if (has_layers()) {
     const LayeredMaterial* material = frame_.scene->layered.of(chunk.material[i]);
     if (material != nullptr) {
-      const LayeredHit hit = read_layered_hit<kFeatures>(*frame_.scene, chunk, i, *material, 0);
-      const LayeredBsdf<kDiffuse> bsdf(hit.surface, hit.frame.to_local(-chunk.direction.get(i)));
+      const LayeredHit hit = read_layered_hit(*frame_.scene, chunk, i, *material, 0);
+      const LayeredBsdf bsdf(hit.surface, hit.frame.to_local(-chunk.direction.get(i)), diffuse);
       const Vec3f wi = hit.frame.to_local(world);
       return share(bsdf.diffuse_f_cos(wi), bsdf.evaluate(wi).f_cos);
     }
   }
   const LocalFrame local(chunk.shading.get(i));
-  const Bsdf<kDiffuse> bsdf(surface_of(chunk, i), local.to_local(-chunk.direction.get(i)));
-  const Vec3f wi = local.to_local(world);
-  return share(bsdf.diffuse_f_cos(wi), bsdf.evaluate(wi).f_cos);
+  const BsdfParts parts = bsdf_parts(diffuse, {chunk.base_color.get(i), chunk.metallic[i], chunk.roughness[i]},
+                                     local.to_local(-chunk.direction.get(i)), local.to_local(world));
+  return share(parts.diffuse, parts.all);
 }
 
 }  // namespace gazetrace

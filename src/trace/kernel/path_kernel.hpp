@@ -14,7 +14,6 @@
 #include "core/hash.hpp"
 #include "core/instruction_sets.hpp"
 #include "core/luminance.hpp"
-#include "material/bsdf.hpp"
 #include "trace/kernel/chunk.hpp"
 #include "trace/kernel/kernel.hpp"
 
@@ -26,7 +25,8 @@ inline float power_heuristic(float chosen, float other) {
   return 1.0F / (1.0F + ratio * ratio);
 }
 
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+// `kLayers`: with the code of materials with extensions.
+template <bool kLayers>
 class PathKernel {
  public:
   static void run(const FrameContext& frame, Workspace& work, int count, KernelCounts& counts) {
@@ -34,21 +34,17 @@ class PathKernel {
   }
 
  private:
-  // The ideal Lambertian model has no layers.
-  static constexpr bool kLayers = kFeatures.layers && kDiffuse != DiffuseModel::matte;
-
   PathKernel(const FrameContext& frame, Workspace& work, KernelCounts& counts)
       : frame_(frame), work_(work), counts_(counts) {}
 
   void trace(int count) {
     start(count);
     int alive = count;
-    const int last = frame_.settings.max_bounces;
     for (int vertex = 0; alive > 0; ++vertex) {
       RayBatch& rays = work_.rays[static_cast<std::size_t>(vertex & 1)];
       (vertex == 0 ? counts_.rays_primary : counts_.rays_bounce) += static_cast<std::uint64_t>(alive);
       stamp(rays, work_.paths[static_cast<std::size_t>(vertex & 1)].slot, static_cast<std::size_t>(alive));
-      if (vertex == last && vertex > 0 && !frame_.last_ray_needs_surface) {
+      if (vertex > 0 && !scatters_at(vertex) && !frame_.last_ray_needs_surface) {
         see_sky(vertex, alive);
         return;
       }
@@ -74,6 +70,11 @@ class PathKernel {
       }
     }
   }
+
+  [[nodiscard]] bool scatters_at(int vertex) const { return vertex < frame_.settings.max_bounces; }
+
+  // The ideal Lambertian model has no layers.
+  [[nodiscard]] bool has_layers() const { return kLayers && frame_.settings.diffuse != DiffuseModel::matte; }
 
   void record(const RayBatch& rays, int count, RayShape shape, bool occlusion) const {
     if (frame_.recorder != nullptr) {
@@ -138,7 +139,7 @@ class PathKernel {
   // The origin of a ray that leaves hit i, off the surface on the side of the direction.
   [[nodiscard]] Vec3f leaving_point(std::size_t i, const Vec3f& direction) const {
     const ChunkHits& chunk = work_.chunk;
-    if constexpr (kLayers) {
+    if (has_layers()) {
       if (leaves_through(i, direction)) {
         return chunk.position.get(i) - chunk.geometric.get(i) * chunk.offset[i];
       }
@@ -150,7 +151,7 @@ class PathKernel {
   }
   // The normal of the side that light must come from; zero where it may come from both.
   [[nodiscard]] Vec3f lit_side(std::size_t i) const {
-    if constexpr (kLayers) {
+    if (has_layers()) {
       const LayeredMaterial* material = frame_.scene->layered.of(work_.chunk.material[i]);
       if (material != nullptr && material->transmits) {
         return {};
@@ -197,24 +198,11 @@ class PathKernel {
 
   // guided.hpp
   void find_cells(std::size_t count);
-  static void choose_tables(ChunkHits& chunk, std::size_t count);
-  static void take_directions_of_tables(ChunkHits& chunk, std::size_t count, const LearnedLight& learned);
   void mix_densities(std::size_t count, const LightSample* lights, bool bounces);
 
   // scatter.hpp
   void scatter_chunk(int vertex, const PathBatch& paths, std::size_t count, const std::uint16_t* active,
                      std::size_t active_count);
-  GAZETRACE_CLONES static void fill_2d(const std::array<SampleKey, kChunk>& key,
-                                       const std::array<std::uint32_t, kChunk>& index, std::size_t count,
-                                       std::uint32_t dimension, std::array<Vec2f, kChunk>& out);
-  static AlbedoTerms terms_of(const std::array<ChunkArray<float>, 4>& terms, std::size_t i);
-  static void read_terms(const ChunkHits& chunk, std::size_t count, const ChunkArray<float>& cosine,
-                         std::array<ChunkArray<float>, 4>& out);
-  static Surface surface_of(const ChunkHits& chunk, std::size_t i);
-  static Bsdf<kDiffuse> bsdf_of(const ChunkHits& chunk, std::size_t i);
-  GAZETRACE_CLONES [[gnu::flatten, gnu::noinline]] static void evaluate_lanes(ChunkHits& chunk, std::size_t count,
-                                                                              bool lit, bool bounces,
-                                                                              const LearnedLight* learned);
   void take_light_sample(int vertex, std::size_t i, const LightSample& light, const PathBatch& paths);
   void take_bsdf_sample(int vertex, std::size_t i, const PathBatch& paths);
 

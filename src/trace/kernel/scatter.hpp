@@ -8,15 +8,15 @@
 #include <limits>
 
 #include "core/hash.hpp"
-#include "material/bsdf.hpp"
+#include "trace/kernel/bsdf_lanes.hpp"
 #include "trace/kernel/path_kernel.hpp"
 #include "trace/kernel/shading_frame.hpp"
 
 namespace gazetrace {
 
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::scatter_chunk(int vertex, const PathBatch& paths, std::size_t count,
-                                                           const std::uint16_t* active, std::size_t active_count) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::scatter_chunk(int vertex, const PathBatch& paths, std::size_t count,
+                                               const std::uint16_t* active, std::size_t active_count) {
   const ChunkHits& chunk = work_.chunk;
   std::array<SampleKey, kChunk> key;
   std::array<std::uint32_t, kChunk> index;
@@ -30,7 +30,7 @@ inline void PathKernel<kFeatures, kDiffuse>::scatter_chunk(int vertex, const Pat
   }
   // What a first surface sees of the lights teaches nothing of its bounces.
   const bool lit = frame_.lights->any() && !(frame_.records_bounces && vertex == 0);
-  const bool bounces = vertex + 1 < frame_.settings.max_bounces || frame_.last_ray_finds_light;
+  const bool bounces = scatters_at(vertex + 1) || frame_.last_ray_finds_light;
   fill_2d(key, index, count, dimension_of(vertex, BounceDimension::select), select);
   if (lit) {
     fill_2d(key, index, count, dimension_of(vertex, BounceDimension::light_uv), light_uv);
@@ -73,11 +73,11 @@ inline void PathKernel<kFeatures, kDiffuse>::scatter_chunk(int vertex, const Pat
   if (guided) {
     find_cells(count);
   }
-  evaluate_lanes(work_.chunk, count, lit, bounces, guided ? frame_.learned : nullptr);
+  evaluate_lanes(frame_.settings.diffuse, work_.chunk, count, lit, bounces, guided ? frame_.learned : nullptr);
   if (guided) {
     mix_densities(count, lit ? lights.data() : nullptr, bounces);
   }
-  if constexpr (kLayers) {
+  if (has_layers()) {
     scatter_layers(vertex, active, active_count, lit ? lights.data() : nullptr, bounces);
   }
   if (vertex == 0 && frame_.settings.light_groups) {
@@ -94,118 +94,9 @@ inline void PathKernel<kFeatures, kDiffuse>::scatter_chunk(int vertex, const Pat
   }
 }
 
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::fill_2d(const std::array<SampleKey, kChunk>& key,
-                                                     const std::array<std::uint32_t, kChunk>& index, std::size_t count,
-                                                     std::uint32_t dimension, std::array<Vec2f, kChunk>& out) {
-  // Separate arrays, so that the compiler vectorises.
-  alignas(64) std::array<float, kChunk> x;
-  alignas(64) std::array<float, kChunk> y;
-  for_lanes(
-      count, [&](std::size_t i) __attribute__((always_inline)) {
-        const Vec2f u = sample_2d(key[i], index[i], dimension);
-        x[i] = u.x;
-        y[i] = u.y;
-      });
-  for (std::size_t i = 0; i < count; ++i) {
-    out[i] = {x[i], y[i]};
-  }
-}
-
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline AlbedoTerms PathKernel<kFeatures, kDiffuse>::terms_of(const std::array<ChunkArray<float>, 4>& terms,
-                                                             std::size_t i) {
-  return {terms[0][i], terms[1][i], terms[2][i], terms[3][i]};
-}
-
-// Table reads do not vectorise; everything around them does.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::read_terms(const ChunkHits& chunk, std::size_t count,
-                                                        const ChunkArray<float>& cosine,
-                                                        std::array<ChunkArray<float>, 4>& out) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const AlbedoTerms terms =
-        albedo_terms({chunk.table_row[i], chunk.table_fraction[i]}, std::clamp(cosine[i], 0.0F, 1.0F));
-    out[0][i] = terms.e;
-    out[1][i] = terms.b;
-    out[2][i] = terms.lambert;
-    out[3][i] = terms.burley;
-  }
-}
-
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline Surface PathKernel<kFeatures, kDiffuse>::surface_of(const ChunkHits& chunk, std::size_t i) {
-  return {chunk.base_color.get(i), chunk.metallic[i], chunk.roughness[i]};
-}
-
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline Bsdf<kDiffuse> PathKernel<kFeatures, kDiffuse>::bsdf_of(const ChunkHits& chunk, std::size_t i) {
-  return {surface_of(chunk, i), chunk.view.get(i), AlbedoRow{chunk.table_row[i], chunk.table_fraction[i]},
-          terms_of(chunk.view_terms, i), chunk.e_average[i]};
-}
-
-// Evaluates the BSDF of every lane towards its light sample, and samples it.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-void PathKernel<kFeatures, kDiffuse>::evaluate_lanes(ChunkHits& chunk, std::size_t count, bool lit, bool bounces,
-                                                     const LearnedLight* learned) {
-  for_lanes(
-      count, [&](std::size_t i) __attribute__((always_inline)) {
-        const LocalFrame local(chunk.shading.get(i));
-        chunk.view.set(i, local.to_local(-chunk.direction.get(i)));
-        chunk.light.set(i, local.to_local(chunk.light.get(i)));
-        const AlbedoRow row = Bsdf<kDiffuse>::table_row(surface_of(chunk, i));
-        chunk.table_row[i] = row.row;
-        chunk.table_fraction[i] = row.fraction;
-      });
-  for (std::size_t i = 0; i < count; ++i) {
-    chunk.e_average[i] = albedo_average({chunk.table_row[i], chunk.table_fraction[i]});
-  }
-  read_terms(chunk, count, chunk.view.z, chunk.view_terms);
-  if (lit) {
-    read_terms(chunk, count, chunk.light.z, chunk.light_terms);
-    for_lanes(
-        count, [&](std::size_t i) __attribute__((always_inline)) {
-          const BsdfEval eval = bsdf_of(chunk, i).evaluate(chunk.light.get(i), terms_of(chunk.light_terms, i));
-          chunk.light_f_cos.set(i, eval.f_cos);
-          chunk.light_pdf[i] = eval.pdf;
-        });
-  }
-  if (learned != nullptr) {
-    for_lanes(
-        count, [&](std::size_t i) __attribute__((always_inline)) {
-          chunk.table_share[i] *= 1.0F - bsdf_of(chunk, i).specular_probability();
-        });
-    choose_tables(chunk, count);
-  }
-  if (bounces) {
-    for_lanes(
-        count, [&](std::size_t i) __attribute__((always_inline)) {
-          const auto chosen = bsdf_of(chunk, i).sample_direction(chunk.random.get(i), chunk.random_lobe[i]);
-          chunk.next.set(i, chosen.direction);
-          chunk.half.set(i, chosen.half);
-        });
-    if (learned != nullptr) {
-      take_directions_of_tables(chunk, count, *learned);
-    }
-    read_terms(chunk, count, chunk.next.z, chunk.next_terms);
-    for_lanes(
-        count, [&](std::size_t i) __attribute__((always_inline)) {
-          const BsdfSample sample =
-              bsdf_of(chunk, i).weigh({chunk.next.get(i), chunk.half.get(i)}, terms_of(chunk.next_terms, i));
-          const Vec3f next = LocalFrame(chunk.shading.get(i)).to_world(sample.direction);
-          const Vec3f unit = next * (1.0F / std::sqrt(std::max(dot(next, next), 1e-20F)));
-          const bool above = dot(unit, chunk.geometric.get(i)) > 0;
-          chunk.next.set(i, unit);
-          chunk.next_weight.set(i, sample.weight);
-          chunk.next_pdf[i] = sample.pdf;
-          chunk.next_good[i] = (static_cast<int>(sample.valid) & static_cast<int>(above)) != 0 ? 1.0F : 0.0F;
-        });
-  }
-}
-
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::take_light_sample(int vertex, std::size_t i, const LightSample& light,
-                                                               const PathBatch& paths) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::take_light_sample(int vertex, std::size_t i, const LightSample& light,
+                                                   const PathBatch& paths) {
   const LightSampling mode = frame_.settings.light_sampling;
   if (!light.delta && mode == LightSampling::bsdf_only) {
     return;
@@ -217,7 +108,7 @@ inline void PathKernel<kFeatures, kDiffuse>::take_light_sample(int vertex, std::
   const std::size_t k = work_.chunk.path[i];
   const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
   Vec3f arriving = throughput * work_.chunk.light_f_cos.get(i) * (light_radiance(light) * weight);
-  if constexpr (kLayers) {
+  if (has_layers()) {
     const std::uint32_t body = body_after(i, paths, leaves_through(i, light.direction));
     if (body != kNoId) {
       arriving *= transmittance(frame_.scene->layered.materials[body].absorption_per_m, light.distance);
@@ -229,13 +120,13 @@ inline void PathKernel<kFeatures, kDiffuse>::take_light_sample(int vertex, std::
   }
 }
 
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::take_bsdf_sample(int vertex, std::size_t i, const PathBatch& paths) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::take_bsdf_sample(int vertex, std::size_t i, const PathBatch& paths) {
   const ChunkHits& chunk = work_.chunk;
   const std::size_t k = chunk.path[i];
   const std::size_t slot = paths.slot[k];
   Vec3f weight = Vec3f{paths.r[k], paths.g[k], paths.b[k]} * chunk.next_weight.get(i);
-  if (frame_.settings.russian_roulette && vertex + 1 < frame_.settings.max_bounces && vertex > 1) {
+  if (frame_.settings.russian_roulette && scatters_at(vertex + 1) && vertex > 1) {
     const float survive = std::min(std::sqrt(std::max(std::max(weight.x, weight.y), weight.z)), 0.95F);
     if (!(sample_1d(work_.samples.key[slot], work_.samples.index[slot],
                     dimension_of(vertex, BounceDimension::roulette)) < survive)) {
@@ -252,7 +143,7 @@ inline void PathKernel<kFeatures, kDiffuse>::take_bsdf_sample(int vertex, std::s
   }
   const Vec3f direction = chunk.next.get(i);
   set_ray(out, n, leaving_point(i, direction), direction, 0.0F, std::numeric_limits<float>::infinity());
-  if constexpr (kLayers) {
+  if (has_layers()) {
     state.body[n] = body_after(i, paths, leaves_through(i, direction));
   }
   out.alpha_key[n] = alpha_key(slot, 2U * static_cast<std::uint32_t>(vertex + 1));

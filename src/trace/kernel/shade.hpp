@@ -12,8 +12,8 @@
 
 namespace gazetrace {
 
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline int PathKernel<kFeatures, kDiffuse>::shade(int vertex, int count) {
+template <bool kLayers>
+inline int PathKernel<kLayers>::shade(int vertex, int count) {
   const auto from = static_cast<std::size_t>(vertex & 1);
   const RayBatch& rays = work_.rays[from];
   const PathBatch& paths = work_.paths[from];
@@ -25,9 +25,9 @@ inline int PathKernel<kFeatures, kDiffuse>::shade(int vertex, int count) {
 }
 
 // Each step is done for a few dozen rays, so that its reads from memory overlap and its arithmetic vectorises.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::shade_chunk(int vertex, const RayBatch& rays, const PathBatch& paths,
-                                                         std::size_t begin, std::size_t end) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::shade_chunk(int vertex, const RayBatch& rays, const PathBatch& paths,
+                                             std::size_t begin, std::size_t end) {
   const RenderScene& scene = *frame_.scene;
   ChunkHits& chunk = work_.chunk;
   std::array<std::uint16_t, kChunk> sky;
@@ -40,7 +40,7 @@ inline void PathKernel<kFeatures, kDiffuse>::shade_chunk(int vertex, const RayBa
     } else if (geometry == kNoId) {
       sky[sky_count++] = static_cast<std::uint16_t>(k);
     } else {
-      locate_hit<kFeatures>(scene, work_.hits, k, chunk, count++);
+      locate_hit(scene, work_.hits, k, chunk, count++);
     }
   }
   add_sky(vertex, rays, paths, sky.data(), sky_count);
@@ -56,14 +56,14 @@ inline void PathKernel<kFeatures, kDiffuse>::shade_chunk(int vertex, const RayBa
     chunk.cone_width[i] = paths.cone_width[k];
     chunk.cone_spread[i] = paths.cone_spread[k];
   }
-  gather_triangles<kFeatures>(scene, rays.time, chunk, count);
-  place_hits<kFeatures>(chunk, count);
-  read_materials<kFeatures>(scene, chunk, count);
-  if constexpr (kLayers) {
+  gather_triangles(scene, rays.time, chunk, count);
+  place_hits(chunk, count);
+  read_materials(scene, chunk, count);
+  if (has_layers()) {
     chunk.smooth = chunk.shading;
     absorb(vertex, count);
   }
-  finish_normals<kFeatures>(chunk, count);
+  finish_normals(chunk, count);
 
   std::array<std::uint16_t, kChunk> active;
   std::size_t active_count = 0;
@@ -77,8 +77,8 @@ inline void PathKernel<kFeatures, kDiffuse>::shade_chunk(int vertex, const RayBa
 }
 
 // Adds the emission of the surface; true where the path scatters.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline bool PathKernel<kFeatures, kDiffuse>::goes_on(int vertex, std::size_t i, const PathBatch& paths) {
+template <bool kLayers>
+inline bool PathKernel<kLayers>::goes_on(int vertex, std::size_t i, const PathBatch& paths) {
   const ChunkHits& chunk = work_.chunk;
   const std::size_t k = chunk.path[i];
   const std::size_t slot = paths.slot[k];
@@ -88,22 +88,20 @@ inline bool PathKernel<kFeatures, kDiffuse>::goes_on(int vertex, std::size_t i, 
   if (vertex == 0 && frame_.settings.surfaces) {
     record_surface(slot, i);
   }
-  if constexpr (kFeatures.emission) {
-    const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
-    const ShadingMaterial& material = frame_.scene->materials[chunk.material[i]];
-    if (material.unlit) {
-      add(slot, clamped(vertex, throughput * chunk.base_color.get(i)), vertex);
-      return false;
-    }
-    if (material.emissive && (chunk.side[i] > 0 || material.double_sided)) {
-      add_emission(vertex, i, slot, throughput, material, paths.pdf[k]);
-    }
+  const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
+  const ShadingMaterial& material = frame_.scene->materials[chunk.material[i]];
+  if (material.unlit) {
+    add(slot, clamped(vertex, throughput * chunk.base_color.get(i)), vertex);
+    return false;
   }
-  return vertex < frame_.settings.max_bounces;
+  if (material.emissive && (chunk.side[i] > 0 || material.double_sided)) {
+    add_emission(vertex, i, slot, throughput, material, paths.pdf[k]);
+  }
+  return scatters_at(vertex);
 }
 
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::record_guides(std::size_t slot, std::size_t i) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::record_guides(std::size_t slot, std::size_t i) {
   const ChunkHits& chunk = work_.chunk;
   GuideBatch& guides = work_.guides;
   guides.albedo_r[slot] = chunk.base_color.x[i];
@@ -118,11 +116,11 @@ inline void PathKernel<kFeatures, kDiffuse>::record_guides(std::size_t slot, std
   guides.hit[slot] = 1;
 }
 
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::record_surface(std::size_t slot, std::size_t i) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::record_surface(std::size_t slot, std::size_t i) {
   const ChunkHits& chunk = work_.chunk;
   SurfaceBatch& out = work_.surfaces;
-  const Vec3f albedo = albedo_to_divide_by(*frame_.scene, chunk, i, kDiffuse);
+  const Vec3f albedo = albedo_to_divide_by(*frame_.scene, chunk, i, frame_.settings.diffuse);
   const Vec3f position = frame_.scene->blurs ? position_in_mid_time(i) : chunk.position.get(i);
   const Vec3f place = position - frame_.camera->origin();
   out.albedo_r[slot] = albedo.x;
@@ -134,40 +132,38 @@ inline void PathKernel<kFeatures, kDiffuse>::record_surface(std::size_t slot, st
   out.place_x[slot] = place.x;
   out.place_y[slot] = place.y;
   out.place_z[slot] = place.z;
-  out.kind[slot] = kind_of_hit(*frame_.scene, chunk, i, kDiffuse);
+  out.kind[slot] = kind_of_hit(*frame_.scene, chunk, i, frame_.settings.diffuse);
   out.blended[slot] = frame_.scene->materials[chunk.material[i]].alpha_mode == AlphaMode::blend ? 1 : 0;
 }
 
 // Where the point of the surface that a sample hit is in the middle of the time for which the shutter is open.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline Vec3f PathKernel<kFeatures, kDiffuse>::position_in_mid_time(std::size_t i) const {
+template <bool kLayers>
+inline Vec3f PathKernel<kLayers>::position_in_mid_time(std::size_t i) const {
   const ChunkHits& chunk = work_.chunk;
-  if constexpr (kFeatures.instances) {
-    if (chunk.instance[i] != kNoId) {
-      constexpr float kMiddle = 0.5F;
-      const RenderScene& scene = *frame_.scene;
-      const ShadingInstance& now = scene.instances[chunk.instance[i]];
-      if (now.way == kNoId && now.shape_way == kNoId) {
-        return chunk.position.get(i);
-      }
-      const ShadingInstance instance = scene.instance_at(chunk.instance[i], kMiddle);
-      const std::uint32_t triangle = chunk.triangle[i];
-      const std::array<Vec3f, 3> corner = instance.shape_way != kNoId
-                                              ? scene.shape_ways[instance.shape_way].at(triangle, kMiddle).position
-                                              : scene.triangles[triangle].position;
-      const float u = chunk.u[i];
-      const float v = chunk.v[i];
-      return apply_columns(instance.axes, corner[0] * (1.0F - u - v) + corner[1] * u + corner[2] * v) +
-             instance.translation;
+  if (chunk.instance[i] != kNoId) {
+    constexpr float kMiddle = 0.5F;
+    const RenderScene& scene = *frame_.scene;
+    const ShadingInstance& now = scene.instances[chunk.instance[i]];
+    if (now.way == kNoId && now.shape_way == kNoId) {
+      return chunk.position.get(i);
     }
+    const ShadingInstance instance = scene.instance_at(chunk.instance[i], kMiddle);
+    const std::uint32_t triangle = chunk.triangle[i];
+    const std::array<Vec3f, 3> corner = instance.shape_way != kNoId
+                                            ? scene.shape_ways[instance.shape_way].at(triangle, kMiddle).position
+                                            : scene.triangles[triangle].position;
+    const float u = chunk.u[i];
+    const float v = chunk.v[i];
+    return apply_columns(instance.axes, corner[0] * (1.0F - u - v) + corner[1] * u + corner[2] * v) +
+           instance.translation;
   }
   return chunk.position.get(i);
 }
 
 // How far what the camera rays hit is from where the pinhole of the frame's mid-time sees it. Call it before the camera
 // rays are overwritten.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::find_shifts(std::size_t count) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::find_shifts(std::size_t count) {
   const CameraRays& camera = *frame_.camera;
   SurfaceBatch& out = work_.surfaces;
   const RayBatch& rays = work_.rays[0];
@@ -186,8 +182,8 @@ inline void PathKernel<kFeatures, kDiffuse>::find_shifts(std::size_t count) {
 }
 
 // Keeps the radiance that the camera rays themselves found. Call it before the first shadow rays are traced.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::keep_shone(std::size_t count) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::keep_shone(std::size_t count) {
   std::copy_n(work_.radiance.r.data, count, work_.surfaces.shone_r.data);
   std::copy_n(work_.radiance.g.data, count, work_.surfaces.shone_g.data);
   std::copy_n(work_.radiance.b.data, count, work_.surfaces.shone_b.data);

@@ -6,9 +6,9 @@
 
 namespace gazetrace {
 
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::queue_shadow(int vertex, std::size_t slot, std::size_t i,
-                                                          const LightSample& light, const Vec3f& arriving) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::queue_shadow(int vertex, std::size_t slot, std::size_t i, const LightSample& light,
+                                              const Vec3f& arriving) {
   const ChunkHits& chunk = work_.chunk;
   ShadowBatch& shadows = work_.shadows;
   const std::size_t n = shadow_count_++;
@@ -25,8 +25,8 @@ inline void PathKernel<kFeatures, kDiffuse>::queue_shadow(int vertex, std::size_
   }
 }
 
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::trace_shadows(int vertex) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::trace_shadows(int vertex) {
   const int count = static_cast<int>(shadow_count_);
   ShadowBatch& shadows = work_.shadows;
   stamp(shadows.rays, shadows.slot, shadow_count_);

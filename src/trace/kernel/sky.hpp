@@ -12,8 +12,8 @@
 namespace gazetrace {
 
 // The weight of light that a BSDF-sampled ray found, and that light sampling could have found, too.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline float PathKernel<kFeatures, kDiffuse>::weight_of_found_light(int vertex, float pdf_bsdf, float pdf_light) const {
+template <bool kLayers>
+inline float PathKernel<kLayers>::weight_of_found_light(int vertex, float pdf_bsdf, float pdf_light) const {
   if (vertex == 0) {
     return 1.0F;
   }
@@ -29,9 +29,9 @@ inline float PathKernel<kFeatures, kDiffuse>::weight_of_found_light(int vertex, 
 }
 
 // Adds the environment's radiance for the rays in `list`, which left the scene.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::add_sky(int vertex, const RayBatch& rays, const PathBatch& paths,
-                                                     const std::uint16_t* list, std::size_t count) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::add_sky(int vertex, const RayBatch& rays, const PathBatch& paths,
+                                         const std::uint16_t* list, std::size_t count) {
   std::array<Vec3f, kChunk> directions;
   std::array<LightSampler::EnvironmentHit, kChunk> sky;
   for (std::size_t i = 0; i < count; ++i) {
@@ -42,7 +42,7 @@ inline void PathKernel<kFeatures, kDiffuse>::add_sky(int vertex, const RayBatch&
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t k = list[i];
     Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
-    if constexpr (kLayers) {
+    if (has_layers()) {
       if (paths.body[k] != kNoId) {  // left a body through a hole in it
         throughput *= transmittance(frame_.scene->layered.materials[paths.body[k]].absorption_per_m,
                                     std::numeric_limits<float>::infinity());
@@ -54,8 +54,8 @@ inline void PathKernel<kFeatures, kDiffuse>::add_sky(int vertex, const RayBatch&
 }
 
 // For the rays after the last scattering event, where they can find the sky only: visibility is enough.
-template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline void PathKernel<kFeatures, kDiffuse>::see_sky(int vertex, int count) {
+template <bool kLayers>
+inline void PathKernel<kLayers>::see_sky(int vertex, int count) {
   const RayBatch& rays = work_.rays[static_cast<std::size_t>(vertex & 1)];
   const PathBatch& paths = work_.paths[static_cast<std::size_t>(vertex & 1)];
   record(rays, count, RayShape::single, true);

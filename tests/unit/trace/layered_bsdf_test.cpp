@@ -18,7 +18,7 @@ using test::layered;
 using test::layered_kinds;
 using test::LayeredKind;
 
-using Model = LayeredBsdf<DiffuseModel::burley>;
+using Model = LayeredBsdf;
 
 constexpr SampleKey kKey = make_sample_key(11, 0, 0);
 constexpr std::array kRoughness{0.0F, 1e-4F, 0.01F, 0.1F, 0.3F, 0.6F, 1.0F};
