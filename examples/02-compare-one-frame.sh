@@ -8,7 +8,7 @@ frame=${FRAME:-7}
 common=(render --config examples/example.toml --frames "$frame" --size "${SIZE:-640x360}" --overwrite --quiet)
 
 mkdir -p out/compare/uniform out/compare/foveated
-"$gazetrace" "${common[@]}" --falloff uniform --spp 32 \
+"$gazetrace" "${common[@]}" --sampling uniform --spp 32 \
   --output out/compare/uniform/frame.####.exr --output out/compare/uniform/frame.####.png
 "$gazetrace" "${common[@]}" --map out/compare/foveated/map.####.exr --aov samples,eccentricity \
   --output out/compare/foveated/frame.####.exr --output out/compare/foveated/frame.####.png

@@ -98,7 +98,7 @@ def settings_of_job(
     options.update(world_options(scene.world, job_folder, side_folder))
     options.update(gaze_options(chosen, job_folder))
     options.update(screen_options(chosen, job_folder))
-    for name in ("preset", "falloff", "filter"):
+    for name in ("preset", "sampling", "density", "filter"):
         if getattr(chosen, name):
             options[name] = getattr(chosen, name)
     if chosen.samples:

@@ -73,7 +73,7 @@ class GAZETRACE_PT_sampling(RenderPanel, bpy.types.Panel):
         """Everything in one column."""
         layout = self.layout
         layout.use_property_split = True
-        for name in ("preset", "falloff", "samples", "filter", "view_source", "output_folder", "display_pictures"):
+        for name in ("preset", "sampling", "density", "samples", "filter", "view_source", "output_folder", "display_pictures"):
             layout.prop(context.scene.gazetrace, name)
         layout.prop(context.scene.gazetrace, "further_settings")
 

@@ -98,11 +98,12 @@ class GazetraceSettings(bpy.types.PropertyGroup):
         name="Distance", description="Distance from the eye to the screen", default=0.6, min=0.001, unit="LENGTH"
     )
     preset: any_name("presets", "Preset", "A named list of settings. Empty: the program's defaults")
-    falloff: any_name("falloffs", "Fall-off", "How samples become fewer away from the gaze. Empty: the preset's")
+    sampling: any_name("samplings", "Sampling", "Where the samples of a frame go. Empty: the preset's")
+    density: any_name("densities", "Density", "How samples become fewer away from the gaze, for the sampling by density")
     filter: any_name("filters", "Filter", "How pixels between the samples are filled. Empty: the preset's")
     samples: IntProperty(
         name="Samples",
-        description="Samples a pixel of uniform frames, and the full rate of density models. 0: the preset's",
+        description="Samples a pixel on average, whatever the sampling. 0: the sampling's own",
         min=0,
         soft_max=1024,
     )

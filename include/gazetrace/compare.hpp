@@ -29,9 +29,9 @@ inline constexpr std::array<const char*, 3> kRetinalRegionNames{"fovea", "interm
 struct RetinalRegions {
   std::array<double, 2> end_deg{2.6, 8.5};
 };
-// The regions of the fall-off "regions", always as cones, also where sampling used discs. Error(usage) unless
+// The regions of RegionSampling, always as cones, also where sampling used discs. Error(usage) unless
 // 0 < first < second.
-RetinalRegions retinal_regions(const std::array<double, 2>& angles_deg, AngleReading reading);
+RetinalRegions retinal_regions(const std::array<double, 2>& eccentricities_deg);
 
 // What the eye did while a frame was shown; each class is scored separately. in_flight: in a saccade, or within
 // kAfterSaccadeNs of its end, when little is seen. unclassified: there is gaze, but its movement is not known.

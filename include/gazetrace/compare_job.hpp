@@ -26,8 +26,7 @@ struct CompareJob : MetricChoice {
   std::optional<FrameList> frames;
   std::optional<FrameRate> fps;
   std::optional<double> exposure_ev;
-  std::optional<std::array<double, 2>> region_angles_deg;
-  AngleReading reading = AngleReading::full_angle;  // of region_angles_deg
+  std::optional<std::array<double, 2>> region_eccentricities_deg;
   JobSettings shared;  // screen, gaze, colour: the options that `render` has, under the same names
   // Where the viewer looked, in fractions of the frame: one place for all frames, or one a frame, empty where nobody
   // looked. Takes the place of `gaze` and `gaze-at`.

@@ -41,7 +41,7 @@ std::string bounded(std::string_view text, std::size_t most = 1000);
 // Messages that do not stop the work, one line each. Functions that can warn return them beside their result.
 using Warnings = std::vector<std::string>;
 
-// The message for every choice by name: "unknown falloff 'linaer'; did you mean 'linear'? Known: regions, uniform".
+// The message for every choice by name: "unknown filter 'linaer'; did you mean 'linear'? Known: linear, none".
 std::string unknown_name_message(std::string_view what, std::string_view given, const std::vector<std::string>& known);
 
 }  // namespace gazetrace

@@ -34,9 +34,9 @@ struct FrameSettings {
   ReconstructionSettings reconstruction;  // its filter must be named; choose_filter() helps
   AccumulateSettings accumulate;
   ExposureSettings exposure;
-  // What the fall-off `visible` must know of how frames are watched: with the frame's view, what its noise looks like.
+  // What a pilot must know of how frames are watched: with the frame's view, what its noise looks like.
   double frames_per_second = 0;  // of the clip that the frame belongs to; 0: a still
-  // Where it is given: the rates of a frame, in place of the file of the fall-off `map` and of the pilot of `visible`.
+  // Where it is given: the rates of a frame, in place of the file and of the pilot of its sampling.
   std::function<FrameRates(const FrameRequest& request)> rates_of;
   // Where it is given, and TraceSettings::learn_light is set: what a frame has learned of its light, in place of
   // PosedScene::learn_light(). So a part of a frame can know what the whole frame does.
@@ -55,7 +55,7 @@ bool uses_history(const FrameSettings& settings);
 struct StageTimes {
   double plan_ms = 0;         // the sampling map
   double learn_ms = 0;        // PosedScene::learn_light()
-  double pilot_ms = 0;        // everything that decides the rates of the fall-off `visible`
+  double pilot_ms = 0;        // everything that decides the rates of AdaptiveSampling
   double trace_ms = 0;        // samples, and putting the scene into its pose
   double guides_ms = 0;       // first hits for the filter
   double reconstruct_ms = 0;  // the filter
@@ -65,7 +65,7 @@ struct StageTimes {
 };
 
 struct Prediction {
-  std::optional<double> relmse;  // as QualityTarget::relmse, of the frame, by the pilot of the fall-off `visible`
+  std::optional<double> relmse;  // as QualityTarget::relmse, of the frame, by the pilot of AdaptiveSampling
   // As QualityTarget::jod, of the sequence, by the choice of its rate (render_sequence()). Empty from FrameRenderer.
   std::optional<double> jod;
 };
@@ -176,13 +176,13 @@ class FrameRenderer {
 // What the sampling map of a frame depends on beside settings, view and gaze, pictures left out.
 MapContext map_context(const FrameRequest& request, std::uint64_t seed, int threads = 0);
 
-// The picture that the fall-off `map` follows in a frame: FoveationSettings::density_map, checked by
-// check_density_picture(). Error(input).
-ImageGray read_density_map(const FoveationSettings& settings, std::int32_t frame);
-// Every file that FoveationSettings::density_map may stand for, by name; Error(input) where there is none.
-std::vector<std::string> density_map_files(const FoveationSettings& settings);
+// The picture of picture_files_of() that a frame follows, checked by check_density_picture(); empty where there is
+// none. Error(input).
+ImageGray read_density_picture(const FoveationSettings& settings, std::int32_t frame);
+// Every file that picture_files_of() may stand for, by name; Error(input) where there are none of that name.
+std::vector<std::string> density_picture_files(const FoveationSettings& settings);
 
-// The sampling map of a frame, for settings under which no pilot of the frame decides it (`visible`).
+// The sampling map of a frame, for settings under which no pilot of the frame decides it (looks_first()).
 SamplingMap planned_sampling_map(const FoveationSettings& settings, const FrameRequest& request, std::uint64_t seed,
                                  int threads = 0);
 

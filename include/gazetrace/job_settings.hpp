@@ -24,6 +24,12 @@ struct ScreenSettings {
   std::optional<double> pixels_per_degree;
 };
 
+// Where the samples go, and what options say of samplings while another one is chosen.
+struct SamplingSettings : FoveationSettings {
+  RegionSampling unused_regions;
+  DensitySampling unused_density;
+};
+
 struct GazeFileSettings {
   std::string path;
   GazeReadOptions read;
@@ -95,7 +101,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   SequenceStage stage = SequenceStage::whole;
 
   // How it is rendered
-  FoveationSettings foveation;
+  SamplingSettings foveation;
   TraceSettings trace;
   std::string filter = "auto";  // filter_of() says which filter that is
   AccumulateSettings accumulate;

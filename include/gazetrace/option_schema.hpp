@@ -130,6 +130,8 @@ struct Option {
   std::vector<std::string> needs;       // what has to be given with it, in words with settings in back quotes
   std::vector<std::string> idle_words;  // when it has no effect, in the same kind of words
   std::vector<std::string> defaults;    // its values in default settings; empty: not set
+  // Another option and the value that it gets with this one; empty: none.
+  std::pair<std::string, std::string> implies;
 
   // Throws Error(usage, place, ...) for a value that its type takes, and the option does not; may be empty.
   void (*refuse)(const std::string& value, const std::string& place) = nullptr;
@@ -318,7 +320,7 @@ struct Ops {
 
 }  // namespace option_detail
 
-// at(&JobSettings::foveation, &FoveationSettings::uniform_spp)
+// at(&JobSettings::foveation, &FoveationSettings::spp)
 template <class S, class First, class... Rest>
 auto at(First S::*first, Rest... rest) {
   const auto& value = ((option_detail::defaults<S>().*first).*....*rest);

@@ -74,7 +74,8 @@ void parse_value(std::string_view text, const std::string& place, std::array<std
 void parse_value(std::string_view text, const std::string& place, std::array<int, 2>& value);
 void parse_value(std::string_view text, const std::string& place, std::array<double, 2>& value);
 void parse_value(std::string_view text, const std::string& place, std::vector<std::string>& value);  // a,b,c
-void parse_value(std::string_view text, const std::string& place, FalloffTable& value);  // a file, which it reads
+void parse_value(std::string_view text, const std::string& place, Sampling& value);
+void parse_value(std::string_view text, const std::string& place, DensitySampling& value);  // reads a curve
 // "auto", "auto+0.5" or a number of stops. Sets mode and ev, and leaves the rest as it is.
 void parse_value(std::string_view text, const std::string& place, ExposureSettings& value);
 
@@ -100,7 +101,8 @@ std::string format_value(const std::array<std::uint32_t, 3>& value);
 std::string format_value(const std::array<int, 2>& value);
 std::string format_value(const std::array<double, 2>& value);
 std::string format_value(const std::vector<std::string>& value);
-std::string format_value(const FalloffTable& value);
+std::string format_value(const Sampling& value);
+std::string format_value(const DensitySampling& value);
 std::string format_value(const ExposureSettings& value);
 
 // The names of an enumeration's values, in the order of the help.
@@ -119,11 +121,6 @@ using NameList = std::vector<std::pair<E, const char*>>;
       return {__VA_ARGS__};                         \
     }                                               \
   };
-GAZETRACE_ENUM_NAMES(AngleReading, "angle reading", {E::full_angle, "full-angle"}, {E::eccentricity, "eccentricity"})
-GAZETRACE_ENUM_NAMES(SampleUnit, "sample unit", {E::per_block, "block"}, {E::per_pixel, "pixel"})
-GAZETRACE_ENUM_NAMES(RegionShape, "region shape", {E::cone, "cone"}, {E::disc, "disc"})
-GAZETRACE_ENUM_NAMES(FalloffNormalization, "normalisation", {E::display, "display"}, {E::relative, "relative"})
-GAZETRACE_ENUM_NAMES(FalloffEye, "eye", {E::both, "both"}, {E::left, "left"}, {E::right, "right"})
 GAZETRACE_ENUM_NAMES(CameraAxes, "axes", {E::gl, "gl"}, {E::cv, "cv"}, {E::unity, "unity"})
 GAZETRACE_ENUM_NAMES(CameraExtrapolation, "extrapolation", {E::error, "error"}, {E::hold, "hold"})
 GAZETRACE_ENUM_NAMES(PathInterpolation, "interpolation", {E::linear, "linear"}, {E::step, "step"},

@@ -174,7 +174,7 @@ struct TimingRow {
 };
 
 std::vector<std::string> timing_columns();
-// Names of the regions that have columns: those of the fall-off "regions", "uniform" for frames without regions, and
+// Names of the regions that have columns: those of RegionSampling, "uniform" for frames without regions, and
 // the block sizes of density models.
 const std::vector<std::string>& timing_regions();
 std::string timing_row_text(const TimingRow& row);                // one line, without the line break

@@ -79,7 +79,7 @@ class Reconstruction {
 
 // What decides which filter suits a job. The defaults are those of a foveated job that asks for nothing else.
 struct FilterFacts {
-  bool foveated = true;            // a gaze steers where the samples go, under another fall-off than "uniform"
+  bool foveated = true;            // a gaze steers where the samples go, by another sampling than a uniform one
   bool accumulates_sites = false;  // AccumulateMode::reproject under AccumulateOrder::before
   bool means_frames = false;       // AccumulateMode::running
   bool single_pixel = false;       // TraceSettings::only_pixel

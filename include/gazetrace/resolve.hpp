@@ -76,7 +76,7 @@ struct ResolvedJob {
   double load_s = 0;  // of scene and environment
 };
 
-// Where a quality is stated (QualityTarget::jod or ::relmse) and nothing names a fall-off, one is chosen that
+// Where a quality is stated (QualityTarget::jod or ::relmse) and nothing names a sampling, one is chosen that
 // can meet it, and `decisions` says so. Throws Error(usage or input) for anything that is wrong with the job or with
 // the files that it names, as far as the scope goes. Writes nothing. For pictures that were rendered already,
 // recorded_run.hpp finds the job.

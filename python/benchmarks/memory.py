@@ -28,7 +28,7 @@ def resident_mib():
 
 
 def one_large_frame(size):
-    job = gazetrace.Job(scene=SCENE, size=size, falloff="uniform", spp=1, filter="none", aov="albedo,normal,depth")
+    job = gazetrace.Job(scene=SCENE, size=size, sampling="uniform", spp=1, filter="none", aov="albedo,normal,depth")
     rendering = job.render()
     frame = next(rendering)
     rendering.close()

@@ -112,34 +112,17 @@ class JobOptions(TypedDict, total=False):
     frames: Value | Iterable[int] | None
     start: Value | None
     frame_rect: Value | Sequence[Value] | None
-    falloff: Value | None
+    sampling: Value | None
     spp: Value | None
     region_samples: Value | Sequence[Value] | None
     region_blocks: Value | Sequence[Value] | None
-    region_angles: Value | Sequence[Value] | None
-    angle_reading: Value | None
-    sample_unit: Value | None
-    region_shape: Value | None
-    budget_spp: Value | None
-    budget_samples: Value | None
+    region_eccentricities: Value | Sequence[Value] | None
     block_samples: Value | None
     max_block: Value | None
-    density_floor: Value | None
-    target_jod: Value | None
-    falloff_normalisation: Value | None
-    falloff_ramp: Value | Sequence[Value] | None
-    falloff_mar_slope: Value | None
-    falloff_mar_foveal: Value | None
-    falloff_contrast: Value | None
-    falloff_luminance: Value | None
-    falloff_eye: Value | None
-    falloff_log_polar_sigma: Value | None
-    falloff_log_polar_alpha: Value | None
-    falloff_table: Value | None
-    density_map: Value | None
     min_spp: Value | None
     max_spp: Value | None
     target_relmse: Value | None
+    target_jod: Value | None
     filter: Value | None
     accumulate: Value | None
     accumulate_window: Value | None

@@ -157,7 +157,7 @@ def compare(
     """
     if _is_files(reference) and _is_files(test):
         given = {"metrics": metrics, "fps": fps, "exposure": exposure, "display": display or None, "view": view or None,
-                 "region_angles": regions, "angle_reading": "eccentricity" if regions is not None else None,
+                 "region_eccentricities": regions,
                  "threads": threads, **options}
         if _is_files(gaze):
             given["gaze"] = gaze

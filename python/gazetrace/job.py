@@ -33,9 +33,9 @@ class Job:
     and the values are checked by the same definitions. A value of several parts may be a sequence, None stands for an
     option that is not given.
 
-    `density` says where the samples of a frame go, in samples a pixel, or as relative rates where there is a budget: an
-    array of the shape (height, width), of any size, or a dictionary of such arrays by the numbers of frames. It is
-    written to a temporary file, and is the fall-off "map" with that file as `density_map`.
+    `density` may be an array, too, which says where the samples of a frame go, in samples a pixel, or as relative rates
+    where `spp` is given: of the shape (height, width), of any size, or a dictionary of such arrays by the numbers of
+    frames. It is written to a temporary file.
     """
 
     def __init__(self, path=None, /, *, density=None, **options):
@@ -70,6 +70,9 @@ class Job:
                 self._core.set(name, texts_of(_OPTIONS.get(name), value))
 
     def _set_density(self, density):
+        if isinstance(density, (str, os.PathLike)):
+            self._set({"density": density})
+            return
         folder = _TemporaryFolder()
         if isinstance(density, dict):
             for frame, array in density.items():
@@ -79,7 +82,7 @@ class Job:
             write_gray_exr(folder.path / "density.exr", density)
             name = "density.exr"
         self._density_folder = folder
-        self._set({"falloff": "map", "density_map": folder.path / name})
+        self._set({"density": folder.path / name})
 
     def __getitem__(self, name):
         """The value of an option as text; of one that may be given several times, a list; None where it is not set."""
@@ -143,5 +146,5 @@ def _warn(texts):
 
 
 def write_density(path, array):
-    """Writes a density as an EXR that the option `density_map` reads, for runs that are to be repeatable."""
+    """Writes a density as an EXR that the option `density` reads, for runs that are to be repeatable."""
     write_gray_exr(Path(path), np.asarray(array))

@@ -233,10 +233,8 @@ void bind_run(py::module_& module) {
                              })
       .def("color", [](const Run& run) { return std::make_shared<ColorPipeline>(run.recorded.settings().color); })
       .def_property_readonly("regions", [](const Run& run) {
-        const FoveationSettings& foveation = run.recorded.settings().foveation;
-        return foveation.falloff == "regions"
-                   ? std::optional(retinal_regions(foveation.region_angles_deg, foveation.reading).end_deg)
-                   : std::nullopt;
+        const RegionSampling* regions = regions_of(run.recorded.settings().foveation.sampling);
+        return regions != nullptr ? std::optional(regions->eccentricities_deg) : std::nullopt;
       });
 }
 

@@ -62,7 +62,7 @@ class MetricsTest(TestCase):
 class CompareTest(TestCase):
     def test_sequences_that_are_rendered_as_they_are_compared(self):
         job = small_job(frames="1-3", fps=24)
-        result = gazetrace.compare(job.replace(falloff="uniform", spp=16).render(), job.render())
+        result = gazetrace.compare(job.replace(sampling="uniform", spp=16).render(), job.render())
         self.assertEqual([one["frame"] for one in result.frames], [1, 2, 3])
         self.assertIn("fovvideovdp", result.metrics)
         self.assertEqual(result.headline["gaze_class"], "fixation")
@@ -81,11 +81,11 @@ class CompareTest(TestCase):
     def test_files_score_as_with_the_program(self):
         job = gazetrace.Job(scene=COURTYARD, gaze_at=(0.4, 0.5), screen="paper", size=(96, 54), frames="1-2", fps=10)
         one, other = self.folder / "one/frame.####.exr", self.folder / "other/frame.####.exr"
-        job.replace(output=[one], falloff="uniform", spp=8).run()
+        job.replace(output=[one], sampling="uniform", spp=8).run()
         job.replace(output=[other]).run()
         run_program("compare", one, other, "--csv", self.folder / "scores.csv")
         result = gazetrace.compare(one, other)
-        rendered = gazetrace.compare(job.replace(falloff="uniform", spp=8, exr_pixels="float").render(),
+        rendered = gazetrace.compare(job.replace(sampling="uniform", spp=8, exr_pixels="float").render(),
                                      job.replace(exr_pixels="float").render())
         with open(self.folder / "scores.csv", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))

@@ -18,7 +18,7 @@ LIGHT = ["diffuse_direct", "diffuse_indirect", "specular_direct", "specular_indi
 CHANNELS = {**{name: "RGB" for name in (*LIGHT, "albedo")}, "normal": "XYZ", "position": "XYZ", "depth": "Z",
             "forward": "uv", "backward": "uv", "samples": "X", "variance": "X"}
 MATTES = ["crypto_object", "crypto_material", "crypto_asset"]
-OPTIONS = {"env": ROOT / "scenes/courtyard/dusk.hdr", "camera": "walk", "size": "64x36", "fps": "24", "falloff": "uniform",
+OPTIONS = {"env": ROOT / "scenes/courtyard/dusk.hdr", "camera": "walk", "size": "64x36", "fps": "24", "sampling": "uniform",
            "spp": "2", "filter": "linear", "seed": "3", "exr_pixels": "float", "aov": ",".join([*CHANNELS, *MATTES])}
 
 

@@ -16,7 +16,7 @@ class MemoryTest(TestCase):
     """In small; python/benchmarks/memory.py measures the same with a 4K frame and with 1,000 renders."""
 
     def test_taking_a_frame_copies_nothing(self):
-        rendering = small_job(size=(640, 360), falloff="uniform", spp=1, filter="none").render()
+        rendering = small_job(size=(640, 360), sampling="uniform", spp=1, filter="none").render()
         frame = next(rendering)
         tracemalloc.start()
         self.addCleanup(tracemalloc.stop)

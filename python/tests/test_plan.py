@@ -23,7 +23,7 @@ class PlanTest(TestCase):
         self.assertTrue(np.isnan(plan.u).all())
 
     def test_samples_are_those_of_the_sampling_map(self):
-        plan = small_job(falloff="uniform", spp=4).plan()
+        plan = small_job(sampling="uniform", spp=4).plan()
         np.testing.assert_array_equal(plan.samples, [64 * 36 * 4])
         sampling = plan.sampling_map(0)
         self.assertEqual(sampling.region.shape, (36, 64))

@@ -122,7 +122,7 @@ class RenderTest(TestCase):
         self.assertSays("this output exists already", "input", job.render)
 
     def test_keyboard_interrupt_in_the_middle_of_a_frame(self):
-        job = gazetrace.Job(scene=COURTYARD, size=(1280, 720), falloff="uniform", spp=256)
+        job = gazetrace.Job(scene=COURTYARD, size=(1280, 720), sampling="uniform", spp=256)
         rendering = job.render()
         timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
         timer.start()
@@ -132,7 +132,7 @@ class RenderTest(TestCase):
         self.assertEqual(rendering.left, rendering.frames)
 
     def test_max_time_ends_a_sequence_with_an_error(self):
-        rendering = gazetrace.Job(scene=COURTYARD, size=(1280, 720), falloff="uniform", spp=256,
+        rendering = gazetrace.Job(scene=COURTYARD, size=(1280, 720), sampling="uniform", spp=256,
                                   max_time="1s").render()
         self.assertSays("interrupted by `max_time`: 1 of 1 frames are left", "interrupted", next, rendering)
 
@@ -149,7 +149,7 @@ class RenderTest(TestCase):
         thread = threading.Thread(target=count)
         thread.start()
         before = counted
-        next(small_job(size=(320, 180), spp=64, falloff="uniform").render())
+        next(small_job(size=(320, 180), spp=64, sampling="uniform").render())
         after = counted
         done.set()
         thread.join()

@@ -84,6 +84,10 @@ std::string unknown_option_text(const std::string& flag, const CLI::App& command
     if (const std::optional<std::string> refusal = refusal_of(*former)) {
       return flag + ": " + *refusal;
     }
+    const auto& now = former->replacements;
+    if (!now.empty() && is_known("--" + now.front().first)) {
+      return "'" + flag + "' is now --" + now.front().first + "; " + former->reason;
+    }
   }
   return unknown_among_many("option", flag, known);
 }

@@ -92,7 +92,7 @@ std::vector<FormerLine> former_lines() {
       for (const auto& [option, value] : former.replacements) {
         now += fmt::format("{}`{}`{}{}", now.empty() ? "" : " ", option, value.empty() ? "" : " ", value);
       }
-      now += "; " + former.reason;
+      now += (now.empty() ? "passed over; " : "; ") + former.reason;
     }
     const std::string given = former.value.empty() && former.takes_value ? "*" : former.value;
     lines.emplace_back(fmt::format("--{}{}{}", former.option, given.empty() ? "" : " ", given), with_flags(now));

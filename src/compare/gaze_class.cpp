@@ -37,13 +37,13 @@ GazeClass gaze_class_of(const GazeAtTime& gaze) {
   return gaze.movement == EyeMovement::fixation ? GazeClass::fixation : GazeClass::unclassified;
 }
 
-RetinalRegions retinal_regions(const std::array<double, 2>& angles_deg, AngleReading reading) {
-  if (!(angles_deg[0] > 0 && angles_deg[1] > angles_deg[0])) {
-    throw Error(ErrorKind::usage, "`region-angles`", fmt::format("{},{} do not ascend", angles_deg[0], angles_deg[1]),
+RetinalRegions retinal_regions(const std::array<double, 2>& eccentricities_deg) {
+  if (!(eccentricities_deg[0] > 0 && eccentricities_deg[1] > eccentricities_deg[0])) {
+    throw Error(ErrorKind::usage, "`region-eccentricities`",
+                fmt::format("{},{} do not ascend", eccentricities_deg[0], eccentricities_deg[1]),
                 "give two angles above 0, the smaller first");
   }
-  const double share = eccentricity_share(reading);
-  return {{share * angles_deg[0], share * angles_deg[1]}};
+  return {eccentricities_deg};
 }
 
 const SequenceScores& headline(const std::vector<SequenceScores>& summary) {

@@ -23,16 +23,16 @@ Vec3d right_of(const Vec3d& gaze) {
 
 // The factor from a squared cut-off frequency to a density. Two pixels are the shortest cycle that a display shows, so
 // f_disp = pixels per degree / 2, separately for either axis.
-double density_per_cpd2(const FoveationSettings& settings, const PlanarView& view, const DensityModel& model) {
+double density_per_cpd2(const PlanarView& view, const DensityModel& model) {
   if (model.quantity == DensityModel::Quantity::density) {
     return 1;
   }
-  if (settings.parameters.normalization == FalloffNormalization::relative) {
+  if (model.relative_to_fovea) {
     const double foveal = model.value({});
     if (!(foveal > 0) || !std::isfinite(foveal)) {
-      throw Error(ErrorKind::usage, "`falloff-normalisation`",
+      throw Error(ErrorKind::usage, "`density`",
                   "the model's cut-off at the gaze itself is " + std::string(foveal > 0 ? "infinite" : "zero"),
-                  "normalise to the display");
+                  "take it relative-to=display");
     }
     return 1 / (foveal * foveal);
   }
@@ -42,8 +42,8 @@ double density_per_cpd2(const FoveationSettings& settings, const PlanarView& vie
 
 }  // namespace
 
-DensityField::DensityField(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction,
-                           const MapContext& context, DensityModel model)
+DensityField::DensityField(const PlanarView& view, const Vec3d& gaze_direction, const MapContext& context,
+                           DensityModel model)
     : view_(&view),
       picture_(model.from_picture ? context.density : nullptr),
       model_(std::move(model)),
@@ -51,11 +51,10 @@ DensityField::DensityField(const FoveationSettings& settings, const PlanarView& 
       right_(right_of(gaze_)),
       up_(cross(right_, gaze_)),
       gaze_px_(view.pixel(gaze_)),
-      floor_(settings.density_floor),
+      floor_(model_.floor),
       step_deg_(std::max(view.step_x, view.step_y) * kDegPerRad),
-      per_cpd2_(density_per_cpd2(settings, view, model_)),
-      shrinks_(model_.quantity == DensityModel::Quantity::cutoff_cpd &&
-               settings.parameters.normalization == FalloffNormalization::display) {
+      per_cpd2_(density_per_cpd2(view, model_)),
+      shrinks_(model_.quantity == DensityModel::Quantity::cutoff_cpd && !model_.relative_to_fovea) {
   if (picture_ != nullptr) {
     per_picture_value_ = 1 / full_rate_of_picture(context);
   }
@@ -82,7 +81,7 @@ DensityField::Seen DensityField::seen(double x_px, double y_px) const {
   return seen;
 }
 
-double DensityField::density(const FalloffPlace& place, double cos_off_axis) const {
+double DensityField::density(const DensityPlace& place, double cos_off_axis) const {
   double value = model_.value(place);
   if (model_.quantity == DensityModel::Quantity::cutoff_cpd) {
     const double solid_angle = shrinks_ ? cos_off_axis * cos_off_axis * cos_off_axis : 1.0;
@@ -138,12 +137,12 @@ DensityField::Bounds DensityField::within(int x_px, int y_px, int side_px) const
     }
   }
   Bounds bounds{std::numeric_limits<double>::infinity(), 0};
-  const auto look = [&](const FalloffPlace& place) {
+  const auto look = [&](const DensityPlace& place) {
     bounds.most = std::max(bounds.most, density(place, most_cos));
     bounds.least = std::min(bounds.least, density(place, least_cos));
   };
   for (std::size_t d = 0; d < directions; ++d) {
-    FalloffPlace place = center.place;
+    DensityPlace place = center.place;
     place.meridian = meridians.at(d);
     for (const double step : {-1.0, 0.0, 1.0}) {
       place.eccentricity_deg = std::clamp(center.place.eccentricity_deg + step * reach_deg, 0.0, 180.0);

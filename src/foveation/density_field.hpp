@@ -3,7 +3,7 @@
 // chosen.
 #pragma once
 
-#include "foveation/falloff.hpp"
+#include "foveation/model.hpp"
 
 namespace gazetrace {
 
@@ -11,8 +11,7 @@ class DensityField {
  public:
   // Keeps references to `view` and `context.density`, which must outlive it. A model that follows a picture must have
   // one.
-  DensityField(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction,
-               const MapContext& context, DensityModel model);
+  DensityField(const PlanarView& view, const Vec3d& gaze_direction, const MapContext& context, DensityModel model);
 
   // The density at a point in continuous pixel coordinates, in [floor, 1].
   [[nodiscard]] double at(double x_px, double y_px) const;
@@ -33,12 +32,12 @@ class DensityField {
  private:
   struct Seen {
     Vec3d direction;
-    FalloffPlace place;
+    DensityPlace place;
   };
   [[nodiscard]] Seen seen(double x_px, double y_px) const;
   [[nodiscard]] Vec2d meridian(const Vec3d& direction) const;
   // The density before picture and floor; `cos_off_axis` is the cosine of the angle off the view's axis.
-  [[nodiscard]] double density(const FalloffPlace& place, double cos_off_axis) const;
+  [[nodiscard]] double density(const DensityPlace& place, double cos_off_axis) const;
   [[nodiscard]] double limited(double density) const;
 
   const PlanarView* view_;

@@ -46,21 +46,16 @@ void require_picture(const DensityModel& model, const FoveationSettings& setting
     return;
   }
   if (context.density == nullptr) {
-    throw Error(ErrorKind::usage, "`falloff`", "'" + settings.falloff + "' follows a picture, and there is none",
+    throw Error(ErrorKind::usage, "`sampling`",
+                "'" + to_string(settings.sampling) + "' follows a picture, and there is none",
                 "give MapContext::density");
   }
   check_density_picture(*context.density, settings, "density picture");
 }
 
-// The budget in samples per frame, if there is one.
+// The samples of the frame, where they are stated.
 std::optional<double> budget_of(const FoveationSettings& settings, const PlanarView& view) {
-  if (settings.budget_samples) {
-    return static_cast<double>(*settings.budget_samples);
-  }
-  if (settings.budget_spp) {
-    return *settings.budget_spp * view.width_px * view.height_px;
-  }
-  return std::nullopt;
+  return settings.spp ? std::optional(*settings.spp * view.width_px * view.height_px) : std::nullopt;
 }
 
 SamplingMap map_of_layout(Layout layout, const std::optional<double>& budget, const MapContext& context) {
@@ -83,9 +78,12 @@ SamplingMap map_of_density(DensityModel model, const FoveationSettings& asked, c
   if (model.from_picture) {
     model.full_rate_spp = full_rate_of_picture(context);
   }
-  double rate = model.full_rate_spp.value_or(asked.uniform_spp);
-  const FoveationSettings settings = with_limits_of(model, asked);
-  const DensityField field(settings, view, gaze_direction, context, std::move(model));
+  double rate = model.full_rate_spp;
+  FoveationSettings settings = asked;
+  if (model.own_block_samples && asked.block_samples == FoveationSettings().block_samples) {
+    settings.block_samples = *model.own_block_samples;
+  }
+  const DensityField field(view, gaze_direction, context, std::move(model));
   if (budget) {
     rate = std::min(*budget / sum_of_density(field, view.width_px, view.height_px, context.threads), kMaxSpp);
   }
@@ -97,25 +95,35 @@ SamplingMap map_of_density(DensityModel model, const FoveationSettings& asked, c
   return std::move(blocks.map);
 }
 
-SamplingMap map_of_falloff(const FoveationSettings& settings, const PlanarView& view,
-                           const std::optional<Vec3d>& gaze_direction, const MapContext& context) {
-  const std::optional<double> budget = budget_of(settings, view);
-  if (!gaze_direction && !follows_picture(settings)) {
-    return map_of_layout(uniform_layout(settings.uniform_spp, view.width_px, view.height_px), budget, context);
+SamplingMap uniform_map(const FoveationSettings& settings, const PlanarView& view, const MapContext& context) {
+  const double spp = settings.spp.value_or(kUsualSpp);
+  const bool is_whole = spp == std::floor(spp);
+  const auto samples = static_cast<std::uint32_t>(is_whole ? spp : kUsualSpp);
+  return map_of_layout(uniform_layout(samples, view.width_px, view.height_px),
+                       is_whole ? std::nullopt : budget_of(settings, view), context);
+}
+
+SamplingMap map_of_sampling(const FoveationSettings& settings, const PlanarView& view,
+                            const std::optional<Vec3d>& gaze_direction, const MapContext& context) {
+  if (gaze_direction) {
+    check_gaze(*gaze_direction);
   }
+  if (is_uniform(settings.sampling) || (!gaze_direction && traits_of(settings.sampling).needs_gaze)) {
+    return uniform_map(settings, view, context);
+  }
+  const std::optional<double> budget = budget_of(settings, view);
   const Vec3d gaze = gaze_direction.value_or(view.direction(0.5 * view.width_px, 0.5 * view.height_px));
-  check_gaze(gaze);
-  Falloff falloff = make_falloff(settings, view, gaze);
-  if (auto* model = std::get_if<DensityModel>(&falloff)) {
+  SamplingModel sampling = sampling_model(settings, view, gaze);
+  if (auto* model = std::get_if<DensityModel>(&sampling)) {
     return map_of_density(std::move(*model), settings, view, gaze, budget, context);
   }
-  return map_of_layout(std::get<Layout>(std::move(falloff)), budget, context);
+  return map_of_layout(std::get<Layout>(std::move(sampling)), budget, context);
 }
 
 }  // namespace
 
 void check_density_picture(const ImageGray& density, const FoveationSettings& settings, const std::string& place) {
-  const double most = settings.budget_spp || settings.budget_samples ? std::numeric_limits<float>::max() : kMaxSpp;
+  const double most = settings.spp ? std::numeric_limits<float>::max() : kMaxSpp;
   bool any = false;
   for (std::size_t i = 0; i < density.pixels.size(); ++i) {
     const auto value = static_cast<double>(density.pixels[i]);
@@ -144,21 +152,21 @@ SamplingMap make_sampling_map(const FoveationSettings& settings, const PlanarVie
                               const std::optional<Vec3d>& gaze_direction, const MapContext& context) {
   check_foveation(settings);
   check_view(view);
-  return map_of_falloff(settings, view, gaze_direction, context);
+  return map_of_sampling(settings, view, gaze_direction, context);
 }
 
-std::optional<ImageGray> falloff_density(const FoveationSettings& settings, const PlanarView& view,
-                                         const Vec3d& gaze_direction, const MapContext& context) {
+std::optional<ImageGray> density_image(const FoveationSettings& settings, const PlanarView& view,
+                                       const Vec3d& gaze_direction, const MapContext& context) {
   check_foveation(settings);
   check_view(view);
   check_gaze(gaze_direction);
-  Falloff falloff = make_falloff(settings, view, gaze_direction);
-  auto* model = std::get_if<DensityModel>(&falloff);
+  SamplingModel sampling = sampling_model(settings, view, gaze_direction);
+  auto* model = std::get_if<DensityModel>(&sampling);
   if (model == nullptr) {
     return std::nullopt;
   }
   require_picture(*model, settings, context);
-  const DensityField field(with_limits_of(*model, settings), view, gaze_direction, context, std::move(*model));
+  const DensityField field(view, gaze_direction, context, std::move(*model));
   ImageGray image(view.width_px, view.height_px);
   parallel_for(static_cast<std::size_t>(view.height_px), context.threads, [&](std::size_t row) {
     const int y = static_cast<int>(row);

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "foveation/falloff.hpp"
+#include "foveation/model.hpp"
 
 namespace gazetrace {
 

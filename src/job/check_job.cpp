@@ -87,19 +87,17 @@ void check_target(const JobSettings& job) {
     throw Error(ErrorKind::usage, option, "what is seen depends on where the eye looks",
                 "give `gaze` or `gaze-at`, and the `screen`");
   }
-  if (job.foveation.falloff == "regions") {
-    throw Error(
-        ErrorKind::usage, option, "the rates and blocks of `falloff` regions are not chosen by quality",
-        "give `falloff` visible or another model (a preset that is named may have chosen regions), or a budget");
+  if (regions_of(job.foveation.sampling) != nullptr) {
+    throw Error(ErrorKind::usage, option, "the rates and blocks of `sampling` regions are not chosen by quality",
+                "give `sampling` adaptive or a `density` (a preset that is named may have chosen regions), or `spp`");
   }
-  if (job.foveation.falloff == "map" &&
-      frame_file_name(job.foveation.density_map, 1) != frame_file_name(job.foveation.density_map, 2)) {
-    throw Error(ErrorKind::usage, option, "the frames that are judged may have no picture in `density-map`",
-                "give one picture for all frames, or a budget");
+  if (has_frame_number(picture_files_of(job.foveation.sampling))) {
+    throw Error(ErrorKind::usage, option, "the frames that are judged may have no picture in `density`",
+                "give one picture for all frames, or `spp`");
   }
   if (job.only_pixel) {
     throw Error(ErrorKind::usage, option, "with `only-pixel` a single pixel is traced, and no quality is chosen",
-                "give `budget-spp` as `rate` in run.json says");
+                "give `spp` as `rate` in run.json says");
   }
   const AccumulateSettings& accumulate = job.accumulate;
   const bool adds_up = accumulate.mode == AccumulateMode::two_sided && !(accumulate.blend > 0) &&
@@ -108,7 +106,7 @@ void check_target(const JobSettings& job) {
     throw Error(
         ErrorKind::usage, option,
         "only what `accumulate` two-sided adds up at rest is known beforehand, without `accumulate-blend` and resets",
-        "give `accumulate` two-sided, leave it out, or give a budget");
+        "give `accumulate` two-sided, leave it out, or give `spp`");
   }
 }
 
@@ -146,14 +144,9 @@ void check_chunk(const JobSettings& job) {
 void check_job(const Job& asked, const JobSchema& schema) {
   const Job whole = with_quality_defaults(asked);
   const JobSettings& job = whole.settings;
-  check_falloff_name(job.foveation.falloff, "`falloff`");
   check_foveation(job.foveation);
-  if (job.foveation.falloff == "map" && job.foveation.density_map.empty()) {
-    throw Error(ErrorKind::usage, "`density-map`", "the fall-off 'map' has no picture",
-                "name an EXR of samples a pixel");
-  }
   check_filter_name(job.filter, "`filter`");
-  if (job.foveation.falloff == "visible" && !job.foveation.target.is_given()) {
+  if (looks_first(job.foveation.sampling) && !job.foveation.target.is_given()) {
     FrameRequest request;
     request.width_px = job.size.width;
     request.height_px = job.size.height;
@@ -188,7 +181,8 @@ FilterChoice filter_of(const JobSettings& job) {
     return {job.filter, {}};
   }
   const bool has_gaze = !job.gaze.path.empty() || job.gaze_at;
-  const bool foveated = follows_picture(job.foveation) || (has_gaze && job.foveation.falloff != "uniform");
+  const Sampling& sampling = job.foveation.sampling;
+  const bool foveated = has_gaze ? !is_uniform(sampling) : follows_picture(sampling);
   return choose_filter({.foveated = foveated,
                         .accumulates_sites = job.accumulate.mode == AccumulateMode::reproject &&
                                              job.accumulate.order == AccumulateOrder::before,

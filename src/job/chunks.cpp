@@ -35,7 +35,7 @@ std::vector<std::int32_t> numbers_of(const FramePlan& plan) {
 
 // Samples that a pilot or a clock decides are not known before the frame is rendered.
 bool samples_are_known(const FoveationSettings& foveation) {
-  return foveation.falloff != "visible" && !foveation.target.is_given();
+  return !looks_first(foveation.sampling) && !foveation.target.is_given();
 }
 
 FrameChunk chunk_of(const std::vector<std::int32_t>& frames, const std::vector<double>& samples, std::size_t begin,

@@ -34,8 +34,9 @@ std::vector<std::string> existing(const std::vector<std::string>& paths) {
   return found;
 }
 
-std::vector<std::string> density_files(const JobSettings& job) {
-  return job.foveation.falloff == "map" ? density_map_files(job.foveation) : std::vector<std::string>();
+std::string curve_file(const JobSettings& job) {
+  const auto* density = std::get_if<DensitySampling>(&job.foveation.sampling);
+  return density == nullptr ? std::string() : density->curve.path;
 }
 
 }  // namespace
@@ -44,14 +45,14 @@ std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
   const fs::path camera_path(job.camera_path);
   // COLMAP keeps the lenses in a file beside that of its pictures.
   const fs::path lenses = camera_path.filename() == "images.txt" ? camera_path.parent_path() / "cameras.txt" : "";
-  std::vector<std::string> files = existing({job.environment, job.camera_path, lenses.string(), job.gaze.path,
-                                             job.gaze.columns_file, job.screen.name, job.recording_screen,
-                                             ocio_file(job), job.foveation.parameters.table.path, job.resume_from});
+  std::vector<std::string> files =
+      existing({job.environment, job.camera_path, lenses.string(), job.gaze.path, job.gaze.columns_file,
+                job.screen.name, job.recording_screen, ocio_file(job), curve_file(job), job.resume_from});
   if (!job.scene.empty()) {
     const std::vector<std::string> scene = scene_files(job.scene, job.allow_outside);
     files.insert(files.end(), scene.begin(), scene.end());
   }
-  const std::vector<std::string> densities = density_files(job);
+  const std::vector<std::string> densities = density_picture_files(job.foveation);
   files.insert(files.end(), densities.begin(), densities.end());
   return digest_files(files, job.threads);
 }
@@ -77,7 +78,7 @@ std::string digest_job(const JobSettings& job, const std::map<std::string, std::
     parts.emplace_back("scene file", digest_of(path));
   }
   // Of a sequence all files count, whatever frames are wanted: the parts of a run have one digest.
-  for (const std::string& path : density_files(job)) {
+  for (const std::string& path : density_picture_files(job.foveation)) {
     parts.emplace_back("density map " + fs::path(path).filename().string(), digest_of(path));
   }
   parts.emplace_back("ocio file", existing({ocio_file(job)}).empty() ? ocio_file(job) : digest_of(ocio_file(job)));

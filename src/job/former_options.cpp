@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <sstream>
+#include <system_error>
 
 namespace gazetrace {
 namespace {
 
 constexpr const char* kGivenValue = "*";
+constexpr const char* kHalfOfGiven = "*/2";
 
 // "--sampling density --density *" as options with their values.
 std::vector<std::pair<std::string, std::string>> options_in(const std::string& text) {
@@ -35,6 +38,25 @@ std::vector<FormerOption> table_of_this_version() {
 #undef GAZETRACE_GONE
 #undef GAZETRACE_ELSEWHERE
   };
+}
+
+// Of one number or several with commas between; what is none is for the option to refuse.
+std::string halved(const std::string& text) {
+  std::istringstream parts(text);
+  std::vector<std::string> halves;
+  for (std::string part; std::getline(parts, part, ',');) {
+    double number = 0;
+    const auto [end, code] = std::from_chars(part.data(), part.data() + part.size(), number);
+    halves.push_back(code == std::errc() && end == part.data() + part.size() ? fmt::format("{}", number / 2) : part);
+  }
+  return fmt::format("{}", fmt::join(halves, ","));
+}
+
+std::vector<std::string> now_given(const std::string& value, std::vector<std::string> given) {
+  if (value == kHalfOfGiven) {
+    std::transform(given.begin(), given.end(), given.begin(), halved);
+  }
+  return value.empty() || value == kGivenValue || value == kHalfOfGiven ? given : std::vector{value};
 }
 
 // "`mode` fast"
@@ -93,12 +115,12 @@ CurrentOptions current_options(const std::string& option, const std::vector<std:
   }
   std::vector<std::string> words;
   for (const auto& [name, value] : former->replacements) {
-    const bool is_given_value = value.empty() || value == kGivenValue;
-    current.settings.emplace_back(name, is_given_value ? values : std::vector{value});
-    words.push_back(in_words(name, is_given_value && !former->takes_value ? "" : current.settings.back().second.at(0)));
+    current.settings.emplace_back(name, now_given(value, values));
+    words.push_back(
+        in_words(name, value.empty() ? "" : fmt::format("{}", fmt::join(current.settings.back().second, ","))));
   }
-  current.notice =
-      fmt::format("{} is now {}; {}", in_words(option, former->value), fmt::join(words, " "), former->reason);
+  current.notice = fmt::format("{} is {}{}; {}", in_words(option, former->value),
+                               words.empty() ? "no longer said" : "now ", fmt::join(words, " "), former->reason);
   return current;
 }
 

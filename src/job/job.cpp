@@ -65,6 +65,9 @@ void set_current(Job& job, const std::string& name, const std::vector<std::strin
     throw Error(ErrorKind::usage, named, fmt::format("takes one value, not {}", values.size()));
   }
   set_one(job, option, values, source, named);
+  if (const auto& [other, value] = option.implies; !other.empty()) {
+    set_one(job, option_named(schema, other), {value}, source, named);
+  }
   if (name != kPresetOption) {
     return;
   }

@@ -17,9 +17,9 @@ namespace gazetrace {
 namespace {
 
 // Whether there are rates for a frame that nobody asked for.
-bool has_density_map(const FoveationSettings& foveation, std::int64_t frame) {
-  return foveation.falloff != "map" || !has_frame_number(foveation.density_map) ||
-         std::filesystem::exists(frame_file_name(foveation.density_map, static_cast<std::int32_t>(frame)));
+bool has_density_picture(const FoveationSettings& foveation, std::int64_t frame) {
+  const std::string files = picture_files_of(foveation.sampling);
+  return !has_frame_number(files) || std::filesystem::exists(frame_file_name(files, static_cast<std::int32_t>(frame)));
 }
 
 // For accumulation from both sides: the frames that those of the plan read beside each other. They exist from frame 1
@@ -32,7 +32,7 @@ void add_frames_around(const JobSettings& job, const CameraPath& camera, Resolve
   for (const std::int32_t frame : asked) {
     for (std::int32_t apart = -job.accumulate.window; apart <= job.accumulate.window; ++apart) {
       const std::int64_t near = std::int64_t{frame} + apart;
-      if (has_frame(camera, settings, near) && has_density_map(job.foveation, near)) {
+      if (has_frame(camera, settings, near) && has_density_picture(job.foveation, near)) {
         all.insert(frame + apart);
       }
     }

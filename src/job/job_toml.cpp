@@ -133,6 +133,11 @@ std::vector<TomlSetting> toml_settings(const std::string& key, const TomlNode& n
   if (present == nullptr && find_former_option(key, {}) == nullptr) {
     throw Error(ErrorKind::input, place, unknown_among_many("key", key, names_of(options)), remedy);
   }
+  // The record of a run of an earlier version states all of its settings, those that are gone, too.
+  const FormerOption* const known = present == nullptr ? find_former_option(key, {}) : nullptr;
+  if (paths == PathsBegin::working_folder && known != nullptr && refusal_of(*known)) {
+    return {};
+  }
   Option former;
   former.shape = OptionShape::repeated;  // takes any values
   const CurrentOptions current = current_options(key, toml_values(node, present != nullptr ? *present : former, path),

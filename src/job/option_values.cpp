@@ -420,12 +420,20 @@ std::string format_value(const std::vector<std::string>& value) {
   return fmt::format("{}", fmt::join(value, ","));
 }
 
-void parse_value(std::string_view text, const std::string& /*place*/, FalloffTable& value) {
-  value = load_falloff_table(std::string(text));
+void parse_value(std::string_view text, const std::string& place, Sampling& value) {
+  value = parse_sampling(text, place);
 }
 
-std::string format_value(const FalloffTable& value) {
-  return value.path;
+std::string format_value(const Sampling& value) {
+  return to_string(value);
+}
+
+void parse_value(std::string_view text, const std::string& place, DensitySampling& value) {
+  value = parse_density(text, place);
+}
+
+std::string format_value(const DensitySampling& value) {
+  return to_string(value);
 }
 
 std::string format_value(const ExposureSettings& value) {

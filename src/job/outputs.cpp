@@ -190,7 +190,7 @@ void check_output_folders(const OutputSettings& output, const std::string& check
 PipelineSettings pipeline_settings(const JobSettings& job) {
   PipelineSettings settings;
   settings.foveation = job.foveation;
-  if (job.foveation.falloff == "visible" && job.accumulate.mode == AccumulateMode::two_sided &&
+  if (looks_first(job.foveation.sampling) && job.accumulate.mode == AccumulateMode::two_sided &&
       job.foveation.max_block_px == kDefaultMaxBlockPx) {
     // Frames at rest are added up only where their sites are the same, and larger blocks follow from each frame's own
     // pilot.

@@ -12,16 +12,15 @@ namespace {
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
 // "Foveated Path Tracing with Configurable Sampling and Block-Based Rendering", as far as the paper says.
-Settings paper_settings(const std::string& angle_reading) {
-  return {{"falloff", "regions"},        {"region-samples", "32,16,8"},
-          {"region-blocks", "2,4"},      {"region-angles", "5.2,17"},
-          {"region-shape", "disc"},      {"angle-reading", angle_reading},
-          {"sample-unit", "block"},      {"filter", "linear"},
-          {"accumulate", "off"},         {"bounces", "3"},
-          {"russian-roulette", "false"}, {"diffuse", "burley"},
-          {"light-sampling", "mis"},     {"learn-light", "false"},
-          {"pixel-filter", "box"},       {"clamp-indirect", "0"},
-          {"exposure", "auto"},          {"view", "Reinhard"}};
+Settings paper_settings(const std::string& sampling, const std::string& eccentricities) {
+  return {{"sampling", sampling},   {"region-samples", "32,16,8"},
+          {"region-blocks", "2,4"}, {"region-eccentricities", eccentricities},
+          {"filter", "linear"},     {"accumulate", "off"},
+          {"bounces", "3"},         {"russian-roulette", "false"},
+          {"diffuse", "burley"},    {"light-sampling", "mis"},
+          {"learn-light", "false"}, {"pixel-filter", "box"},
+          {"clamp-indirect", "0"},  {"exposure", "auto"},
+          {"view", "Reinhard"}};
 }
 
 }  // namespace
@@ -29,22 +28,20 @@ Settings paper_settings(const std::string& angle_reading) {
 const std::vector<Preset>& presets() {
   static const std::vector<Preset> table{
       {"paper", "the source paper, its angles as diameters: the reading that fits its timings",
-       paper_settings("full-angle")},
-      {"paper-radius", "the source paper, its angles as eccentricities", paper_settings("eccentricity")},
+       paper_settings("regions:shape=disc", "2.6,8.5")},
+      {"paper-radius", "the source paper, its angles as eccentricities",
+       paper_settings("regions:shape=disc-by-radius", "5.2,17")},
       {"default",
        "what is taken when nothing is said and no quality is stated",
-       {{"falloff", "regions"},
+       {{"sampling", "regions"},
         {"region-samples", "32,16,8"},
         {"region-blocks", "2,4"},
-        {"region-angles", "5.2,17"},
-        {"region-shape", "cone"},
-        {"angle-reading", "full-angle"},
-        {"sample-unit", "block"},
+        {"region-eccentricities", "2.6,8.5"},
         {"filter", "auto"},
         {"accumulate", "off"}}},
       {"reference",
        "what others are compared with: uniform at a high rate, every pixel by itself",
-       {{"falloff", "uniform"},
+       {{"sampling", "uniform"},
         {"spp", "1024"},
         {"filter", "none"},
         {"accumulate", "off"},

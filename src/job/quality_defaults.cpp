@@ -5,11 +5,12 @@ namespace gazetrace {
 
 Job with_quality_defaults(Job job, Decisions* decisions) {
   FoveationSettings& foveation = job.settings.foveation;
-  const bool is_open = !job.sources.contains("falloff") && foveation.falloff == FoveationSettings().falloff;
+  const bool is_open =
+      !job.sources.contains("sampling") && to_string(foveation.sampling) == to_string(FoveationSettings().sampling);
   if (foveation.target.is_given() && is_open) {
-    foveation.falloff = "visible";
+    foveation.sampling = AdaptiveSampling{};
     if (decisions != nullptr) {
-      decisions->emplace_back("falloff", "visible, since a quality is stated");
+      decisions->emplace_back("sampling", "adaptive, since a quality is stated");
     }
   }
   return job;

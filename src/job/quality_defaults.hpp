@@ -6,8 +6,8 @@
 
 namespace gazetrace {
 
-// Rates of the default fall-off, `regions`, are given and do not follow from a quality. Where neither options nor a
-// preset name a fall-off, it is `visible`. The choice is added to `decisions`, if there are any.
+// Rates of the default sampling, regions, are given and do not follow from a quality. Where neither options nor a
+// preset name a sampling, it is adaptive. The choice is added to `decisions`, if there are any.
 Job with_quality_defaults(Job job, Decisions* decisions = nullptr);
 
 }  // namespace gazetrace

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "gazetrace/density.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/foveation.hpp"
 #include "gazetrace/reconstruct.hpp"
 
 namespace gazetrace {
@@ -27,14 +27,6 @@ bool has_name(const std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
-void check_falloff_name(const std::string& name, const std::string& place) {
-  const std::vector<std::string> known = names_of_all(falloffs());
-  if (!has_name(known, name)) {
-    throw Error(ErrorKind::usage, place, unknown_name_message("falloff", name, known),
-                has_name(names_of_all(reconstruction_filters()), name) ? "a filter has this name: give `filter`" : "");
-  }
-}
-
 void check_filter_name(const std::string& name, const std::string& place) {
   const std::vector<std::string> known = names_of_all(reconstruction_filters());
   if (name == "auto" || has_name(known, name)) {
@@ -45,7 +37,7 @@ void check_filter_name(const std::string& name, const std::string& place) {
                 "build it where that library is found, or give guided");
   }
   throw Error(ErrorKind::usage, place, unknown_name_message("filter", name, known),
-              has_name(names_of_all(falloffs()), name) ? "a fall-off has this name: give `falloff`" : "");
+              has_name(names_of_all(densities()), name) ? "a density has this name: give `density`" : "");
 }
 
 }  // namespace gazetrace

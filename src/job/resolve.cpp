@@ -112,9 +112,7 @@ CameraPath load_camera_and_scene(const ResolveOptions& options, const GazeLog* l
 }
 
 std::string sampling_without_gaze(const FoveationSettings& foveation) {
-  const std::string rate = foveation.budget_spp       ? fmt::format("{} samples a pixel", *foveation.budget_spp)
-                           : foveation.budget_samples ? fmt::format("{} samples in all", *foveation.budget_samples)
-                                                      : fmt::format("{} samples", foveation.uniform_spp);
+  const std::string rate = fmt::format("{} samples a pixel", foveation.spp.value_or(kUsualSpp));
   return rate + " everywhere: there is no gaze";
 }
 
@@ -123,7 +121,7 @@ void choose_wanted_frames(const ViewInputs& inputs, ResolvedJob& resolved) {
   std::string decision;
   resolved.frames = choose_frames(job, inputs.camera, inputs.log, inputs.taken_off_ns, inputs.scene, decision);
   resolved.decisions.emplace_back("frames", decision);
-  if (inputs.log == nullptr && !follows_picture(job.foveation)) {
+  if (inputs.log == nullptr && !follows_picture(job.foveation.sampling)) {
     resolved.decisions.emplace_back("sampling", sampling_without_gaze(job.foveation));
   }
   if (job.chunk && job.chunk->count > 1) {  // one of one divides nothing
@@ -139,11 +137,12 @@ void check_eccentricity(const JobSettings& job, const GazeLog* log) {
 }
 
 // A single picture is the same for every frame.
-void check_density_maps(const FoveationSettings& foveation, const FramePlan& plan) {
+void check_density_pictures(const FoveationSettings& foveation, const FramePlan& plan) {
+  const std::string files = picture_files_of(foveation.sampling);
   for (const std::vector<FrameRequest>* frames : {&plan.frames, &plan.around}) {
     for (const FrameRequest& request : *frames) {
-      read_density_map(foveation, request.frame);
-      if (!has_frame_number(foveation.density_map)) {
+      read_density_picture(foveation, request.frame);
+      if (!has_frame_number(files)) {
         return;
       }
     }
@@ -159,11 +158,23 @@ void warn_of_filter(const JobSettings& job, Warnings& warnings) {
   }
 }
 
+// Of a setting whose meaning changed in this version.
+void warn_of_mean_rate(const FoveationSettings& foveation, Warnings& warnings) {
+  if (foveation.spp && std::holds_alternative<DensitySampling>(foveation.sampling) &&
+      !follows_picture(foveation.sampling)) {
+    warnings.push_back(
+        fmt::format("`spp` {} is the mean of a frame; it was the full rate of a density before, which the "
+                    "place has that the eye looks at",
+                    *foveation.spp));
+  }
+}
+
 void warn_of_inputs(const CameraPath& camera, const GazeLog* log, ResolveScope scope, ResolvedJob& resolved) {
   const JobSettings& job = resolved.job.settings;
   append(resolved.warnings, camera.warnings);
   warn_of_filter(job, resolved.warnings);
   if (log != nullptr) {
+    warn_of_mean_rate(job.foveation, resolved.warnings);
     append(resolved.warnings, log->warnings);
   }
   append(resolved.warnings, resolved.plan.warnings);
@@ -189,8 +200,8 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
     resolved.plan.judged = plan_judged_frames(job, inputs, resolved.plan_settings, resolved.decisions);
   }
   check_eccentricity(job, log);
-  if (job.foveation.falloff == "map" && options.scope == ResolveScope::render) {
-    check_density_maps(job.foveation, resolved.plan);
+  if (options.scope == ResolveScope::render) {
+    check_density_pictures(job.foveation, resolved.plan);
   }
   warn_of_inputs(camera, log, options.scope, resolved);
 }
@@ -211,8 +222,8 @@ void set_pipeline(ResolveScope scope, ResolvedJob& resolved) {
 std::string digest_of_mean(const JobSettings& job, const std::map<std::string, std::string>& files) {
   JobSettings same = job;
   same.trace.seed = 0;
-  if (job.foveation.falloff == "uniform" && job.filter == "none") {
-    same.foveation.uniform_spp = FoveationSettings().uniform_spp;
+  if (is_uniform(job.foveation.sampling) && job.filter == "none") {
+    same.foveation.spp.reset();
   }
   return digest_job(same, files);
 }

@@ -14,15 +14,19 @@ namespace {
 constexpr double kLeastSaving = 1.1;
 
 bool is_known_before(const FoveationSettings& foveation) {
-  return foveation.falloff != "uniform" && !follows_picture(foveation) && !foveation.target.is_given() &&
-         !foveation.budget_spp && !foveation.budget_samples;
+  return traits_of(foveation.sampling).needs_gaze && !foveation.target.is_given() && !foveation.spp;
+}
+
+std::string name_of(const Sampling& sampling) {
+  const auto* density = std::get_if<DensitySampling>(&sampling);
+  return density == nullptr ? "`sampling` " + to_string(sampling) : "`density` " + to_string(*density);
 }
 
 std::string remedies(const JobSettings& job) {
-  if (job.foveation.falloff == "regions") {
-    return "smaller `region-angles`, or a `screen` that fills more of the field of view, would change that";
+  if (regions_of(job.foveation.sampling) != nullptr) {
+    return "smaller `region-eccentricities`, or a `screen` that fills more of the field of view, would change that";
   }
-  return "a larger `size`, `falloff-normalisation` relative or `falloff` regions would change that";
+  return "a larger `size`, a `density` relative-to=fovea or `sampling` regions would change that";
 }
 
 }  // namespace
@@ -35,8 +39,8 @@ Warnings saving_warnings(const JobSettings& job, const FramePlan& plan) {
   if (!is_known_before(foveation) || frame == plan.frames.end()) {
     return {};
   }
-  const double full_rate = foveation.falloff == "regions" ? static_cast<double>(foveation.region_samples[0])
-                                                          : static_cast<double>(foveation.uniform_spp);
+  const RegionSampling* const regions = regions_of(foveation.sampling);
+  const double full_rate = regions != nullptr ? regions->samples[0] : kUsualSpp;
   const SamplingMap map = planned_sampling_map(foveation, *frame, job.trace.seed, job.threads);
   const double all = full_rate * frame->width_px * frame->height_px;
   const double saving = all / std::max(1.0, static_cast<double>(map.samples()));
@@ -44,9 +48,9 @@ Warnings saving_warnings(const JobSettings& job, const FramePlan& plan) {
     return {};
   }
   return {
-      fmt::format("`falloff` {} saves only {:.2f} times the samples in frame {}: at {}x{} a degree has {:.1f} pixels, "
+      fmt::format("{} saves only {:.2f} times the samples in frame {}: at {}x{} a degree has {:.1f} pixels, "
                   "and nearly all of them keep their full rate; {}",
-                  foveation.falloff, saving, frame->frame, frame->width_px, frame->height_px,
+                  name_of(foveation.sampling), saving, frame->frame, frame->width_px, frame->height_px,
                   1 / (frame->view.step_x * kDegPerRad), remedies(job))};
 }
 

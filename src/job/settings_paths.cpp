@@ -61,7 +61,8 @@ bool names_file(const Option& option, const std::string& value) {
   }
   std::error_code ignored;
   return option.unit.find("FILE") != std::string::npos &&
-         (value.find('/') != std::string::npos || fs::exists(value, ignored));
+         (value.find('/') != std::string::npos || value.ends_with(".csv") || value.ends_with(".exr") ||
+          fs::exists(value, ignored));
 }
 
 LocatedFile located_file(const Option& option, const std::string& value, const std::string& settings_path) {

@@ -10,17 +10,22 @@
 
 namespace gazetrace {
 
-ImageGray read_density_map(const FoveationSettings& settings, std::int32_t frame) {
-  const std::string path = frame_file_name(settings.density_map, frame);
+ImageGray read_density_picture(const FoveationSettings& settings, std::int32_t frame) {
+  const std::string files = picture_files_of(settings.sampling);
+  if (files.empty()) {
+    return {};
+  }
+  const std::string path = frame_file_name(files, frame);
   ImageGray density = read_exr_gray(path);
   check_density_picture(density, settings, path);
   return density;
 }
 
-std::vector<std::string> density_map_files(const FoveationSettings& settings) {
+std::vector<std::string> density_picture_files(const FoveationSettings& settings) {
+  const std::string pattern = picture_files_of(settings.sampling);
   std::vector<std::string> files;
-  for (const std::int32_t frame : find_frames(settings.density_map)) {
-    files.push_back(frame_file_name(settings.density_map, frame));
+  for (const std::int32_t frame : pattern.empty() ? std::vector<std::int32_t>() : find_frames(pattern)) {
+    files.push_back(frame_file_name(pattern, frame));
   }
   return files;
 }
@@ -28,11 +33,8 @@ std::vector<std::string> density_map_files(const FoveationSettings& settings) {
 SamplingMap planned_sampling_map(const FoveationSettings& settings, const FrameRequest& request, std::uint64_t seed,
                                  int threads) {
   MapContext context = map_context(request, seed, threads);
-  ImageGray density;
-  if (settings.falloff == "map") {
-    density = read_density_map(settings, request.frame);
-    context.density = &density;
-  }
+  const ImageGray density = read_density_picture(settings, request.frame);
+  context.density = density.empty() ? nullptr : &density;
   return make_sampling_map(settings, request.view, request.gaze_direction_render, context);
 }
 

@@ -65,14 +65,13 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request, KnownLight& known)
     density = std::move(rates.spp);
     context.density = &density;
     context.full_rate_spp = rates.full_rate_spp;
-  } else if (foveation.falloff == "map") {
-    density = timed(times.plan_ms, [&] { return read_density_map(foveation, request.frame); });
-    context.density = &density;
-  } else if (foveation.falloff == "visible") {
+  } else if (!looks_first(foveation.sampling)) {
+    density = timed(times.plan_ms, [&] { return read_density_picture(foveation, request.frame); });
+    context.density = density.empty() ? nullptr : &density;
+  } else {
     AdaptiveRates adaptive = timed(times.pilot_ms, [&] { return adaptive_rates(scene, request, frame_settings); });
     foveation.target = {};
-    foveation.budget_samples.reset();
-    foveation.budget_spp = adaptive.spp;
+    foveation.spp = adaptive.spp;
     density = std::move(adaptive.rates);
     context.density = &density;
     add_traces(adaptive.pilot, traced.pilot);

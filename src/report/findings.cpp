@@ -181,7 +181,7 @@ void add_controls(const Results& data, std::vector<std::string>& caveats) {
   }
 }
 
-// A fall-off that saves nothing is uniform sampling under another name, and its controls are the same picture.
+// A sampling that saves nothing is uniform sampling under another name, and its controls are the same picture.
 void add_nothing_saved(const Results& data, const ResultRow& test, std::vector<std::string>& caveats) {
   constexpr double kLeastSaving = 1.1;
   for (const ResultRow* const row : family_of(data, test)) {
@@ -190,7 +190,7 @@ void add_nothing_saved(const Results& data, const ResultRow& test, std::vector<s
       caveats.push_back(fmt::format(
           "{}: it traces {:.3g} samples a pixel where uniform has {:.3g}, so that next to nothing is saved at this "
           "size "
-          "on this screen, and controls with a wrong gaze show the same picture. A larger frame, or another fall-off, "
+          "on this screen, and controls with a wrong gaze show the same picture. A larger frame, or another sampling, "
           "would change that.",
           place_of(test), *test.spp_mean, *row->spp_mean));
       return;

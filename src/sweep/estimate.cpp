@@ -52,7 +52,7 @@ SweepEstimate estimate_sweep(const SweepPlan& plan) {
     row.row.label = reference.key;
     row.row.scene = plan.scenes[reference.scene].name;
     row.plan = pictures[r];
-    add(row, reference.pipeline.foveation.uniform_spp, static_cast<int>(reference.seeds.size()));
+    add(row, reference.pipeline.foveation.spp.value_or(kUsualSpp), static_cast<int>(reference.seeds.size()));
     estimate.rows.back().role = "reference";
   }
   std::set<std::string> known;

@@ -29,9 +29,9 @@ bool is_still(const FramePlan& plan) {
 // Radii of the region borders in pixels, measured along a row of pixels through the middle of the view.
 std::vector<double> rings_of(const FoveationSettings& foveation, const PlanarView& view) {
   std::vector<double> rings;
-  if (foveation.falloff == "regions" && view.step_x > 0) {
-    for (const double angle : foveation.region_angles_deg) {
-      const double eccentricity = eccentricity_share(foveation.reading) * angle;
+  const RegionSampling* const regions = regions_of(foveation.sampling);
+  if (regions != nullptr && view.step_x > 0) {
+    for (const double eccentricity : regions->eccentricities_deg) {
       if (eccentricity < 90) {
         rings.push_back(std::tan(eccentricity * kRadPerDeg) / view.step_x);
       }

@@ -179,7 +179,7 @@ std::string sweep_methods(const SweepPlan& plan, const Results& results) {
       "half "
       "of these against that of the second; scores better than it are reported as unresolved, and a quarter of the "
       "halves' mean squared difference, the variance of the reference, was subtracted from squared errors. ",
-      reference.seeds.size(), reference.pipeline.foveation.uniform_spp, fmt::join(reference.seeds, ", "),
+      reference.seeds.size(), reference.pipeline.foveation.spp.value_or(kUsualSpp), fmt::join(reference.seeds, ", "),
       light_of_references(plan), standing_pictures(results));
   text += fmt::format(
       "Every row was rendered {} times with different seeds, in rounds over all rows of a scene whose order "

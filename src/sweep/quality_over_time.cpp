@@ -49,7 +49,7 @@ std::optional<double> floor_of(const std::vector<ResultReference>& references, c
 
 // Everything that a row varies except how many samples it takes: rows that agree in it lie on one curve.
 std::string family_of(const MeasuredRow& row) {
-  static constexpr std::array<std::string_view, 4> kRates{"spp", "region-samples", "budget-spp", "budget-samples"};
+  static constexpr std::array<std::string_view, 2> kRates{"spp", "region-samples"};
   std::string text;
   for (const auto& [option, value] : row.settings) {
     if (std::find(kRates.begin(), kRates.end(), option) == kRates.end()) {

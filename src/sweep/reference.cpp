@@ -171,8 +171,7 @@ std::vector<std::int32_t> missing_pictures(const CertifiedReference& certified, 
 CertifiedReference described(const SweepReference& reference, const std::string& sweep_directory) {
   CertifiedReference certified;
   certified.directory = sweep_directory + "/" + reference_folder(reference);
-  certified.spp =
-      static_cast<double>(reference.pipeline.foveation.uniform_spp) * static_cast<double>(reference.seeds.size());
+  certified.spp = reference.pipeline.foveation.spp.value_or(kUsualSpp) * static_cast<double>(reference.seeds.size());
   return certified;
 }
 

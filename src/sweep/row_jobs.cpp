@@ -58,7 +58,7 @@ void check_reference_has_no_target(const Job& reference, const std::vector<Assig
   for (const Assignment& given : options) {
     if (is_among(kTargets, given.option)) {
       throw Error(ErrorKind::input, given.place, fmt::format("a reference cannot follow '{}'", given.option),
-                  "give 'spp' or 'budget-spp'");
+                  "give 'spp'");
     }
   }
 }
@@ -113,7 +113,7 @@ Job reference_job(const SweepRequest& request, const SweepFileScene& scene, cons
   assign(job, request.file.common, schema, is_trade_off);
   assign(job, scene.options, schema, is_trade_off);
   for (const auto& [option, value] :
-       {std::pair("falloff", "uniform"), std::pair("spp", "256"), std::pair("filter", "none"),
+       {std::pair("sampling", "uniform"), std::pair("spp", "256"), std::pair("filter", "none"),
         std::pair("accumulate", "off"), std::pair("russian-roulette", "false"), std::pair("clamp-indirect", "0"),
         std::pair("learn-light", "false")}) {
     set_option(job, option, {value}, {Origin::file, {}, {}}, option, schema);

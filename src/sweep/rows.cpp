@@ -13,10 +13,6 @@ RasterSize size_of(const FramePlan& plan) {
   return {plan.frames.front().width_px, plan.frames.front().height_px};
 }
 
-bool is_whole(double value) {
-  return value == std::floor(value) && value >= 1 && value < 4e9;
-}
-
 bool has_gaze(const FramePlan& plan) {
   return std::any_of(plan.frames.begin(), plan.frames.end(),
                      [](const FrameRequest& request) { return request.gaze_direction_render.has_value(); });
@@ -41,21 +37,15 @@ std::string digest_of(const std::string& base, const std::string& what) {
 // Makes a row uniform. It is rendered at full size unless its plan has another.
 void make_uniform(const SweepPlan& plan, PlannedRow& row, double spp) {
   FoveationSettings& foveation = row.pipeline.foveation;
-  foveation.falloff = "uniform";
+  foveation.sampling = UniformSampling{};
   foveation.target = {};
-  foveation.budget_samples.reset();
-  foveation.budget_spp.reset();
-  if (is_whole(spp)) {
-    foveation.uniform_spp = static_cast<std::uint32_t>(spp);
-  } else {
-    foveation.budget_spp = spp;
-  }
+  foveation.spp = spp;
   row.row.is_foveated = false;
   row.row.resolution_scale = static_cast<double>(size_of(row.plan).width_px) / row.size.width_px;
   NamedValues& settings = row.row.settings;
   settings = plan.tests[row.test].uniform_settings;
-  settings.emplace_back("falloff", "uniform");
-  settings.emplace_back(is_whole(spp) ? "spp" : "budget-spp", fmt::format("{:.6g}", spp));
+  settings.emplace_back("sampling", "uniform");
+  settings.emplace_back("spp", fmt::format("{:.6g}", spp));
   for (ResultFrame& frame : row.row.frames) {
     frame.rings_px.clear();
   }
@@ -85,8 +75,8 @@ const char* suffix_of(RowRole role) {
 }  // namespace
 
 bool is_foveated(const SweepTest& test) {
-  return follows_picture(test.pipeline.foveation) ||
-         (test.pipeline.foveation.falloff != "uniform" && has_gaze(test.plan));
+  const Sampling& sampling = test.pipeline.foveation.sampling;
+  return has_gaze(test.plan) ? !is_uniform(sampling) : follows_picture(sampling);
 }
 
 PlannedRow test_row(const SweepPlan& plan, std::size_t test) {
@@ -192,17 +182,17 @@ std::vector<PlannedRow> baselines_of_samples(const SweepPlan& plan, const Planne
 }
 
 std::optional<PlannedRow> cost_row(const SweepPlan& plan, const PlannedRow& test) {
-  const FoveationSettings& foveation = test.pipeline.foveation;
   const std::uint32_t spp = plan.measure.efficiency_spp;
-  if (spp == 0 || !is_foveated(plan.tests[test.test]) || foveation.falloff != "regions") {
+  PlannedRow row = test;
+  FoveationSettings& foveation = row.pipeline.foveation;
+  auto* const regions = std::get_if<RegionSampling>(&foveation.sampling);
+  if (spp == 0 || regions == nullptr || !is_foveated(plan.tests[test.test])) {
     return std::nullopt;
   }
-  PlannedRow row = test;
   row.row.id += "-cost";
-  row.pipeline.foveation.region_samples = {spp, spp, spp};
-  row.pipeline.foveation.region_blocks_px = {1, 1};
-  row.pipeline.foveation.budget_spp.reset();
-  row.pipeline.foveation.budget_samples.reset();
+  regions->samples = {spp, spp, spp};
+  regions->blocks_px = {1, 1};
+  foveation.spp.reset();
   row.digest = digest_of(test.digest, fmt::format("cost by region at {} spp", spp));
   return row;
 }
@@ -214,9 +204,8 @@ double planned_spp(const PlannedRow& row) {
   for (const FrameRequest& request : row.plan.frames) {
     const double size = static_cast<double>(request.width_px) * request.height_px;
     pixels += size;
-    if (foveation.falloff == "visible") {  // a pilot decides; with a target it is not known how many it takes
-      samples += foveation.budget_samples ? static_cast<double>(*foveation.budget_samples)
-                                          : foveation.budget_spp.value_or(foveation.uniform_spp) * size;
+    if (looks_first(foveation.sampling)) {  // with a target it is not known how many it takes
+      samples += foveation.spp.value_or(kUsualSpp) * size;
       continue;
     }
     const SamplingMap map = planned_sampling_map(foveation, request, row.pipeline.trace.seed, row.pipeline.threads);

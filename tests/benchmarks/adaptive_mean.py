@@ -3,7 +3,7 @@
 """Are adaptive frames unbiased before reconstruction, after they decided where to sample and when to stop?
 
   adaptive_mean.py GAZETRACE OUT_FOLDER --scene "NAME FILE OPTIONS" [--scene ...] [--frames 512] [--size 96x54] [--ppd 12]
-                   [--uniform-spp 16] [--margin 0.5] [--adaptive "--falloff visible --target-relmse 0.02"]
+                   [--uniform-spp 16] [--margin 0.5] [--adaptive "--sampling adaptive --target-relmse 0.02"]
 
 OPTIONS are those of `gazetrace render`. Frames of a view at rest are independent: their scramblings follow from seed and frame. The
 mean over all adaptive frames is compared with that over as many uniform ones, each without a filter, in every band of
@@ -65,7 +65,7 @@ class Bench:
             yield f"tenth {k}", tenth == k
 
     def compare(self, name, scene):
-        uniform = ["--falloff", "uniform", "--no-learn-light", "--spp", str(self.asked.uniform_spp)]
+        uniform = ["--sampling", "uniform", "--no-learn-light", "--spp", str(self.asked.spp)]
         plain = self.frames(name, "uniform", scene, 1, *uniform)
         adaptive = self.frames(name, "adaptive", scene, 3, *shlex.split(self.asked.adaptive))
         of_class = self.frames(name, "classes", scene, 2, *uniform)
@@ -98,7 +98,7 @@ def main():
     parser.add_argument("--ppd", type=float, default=12)
     parser.add_argument("--uniform-spp", type=int, default=16)
     parser.add_argument("--margin", type=float, default=0.5)
-    parser.add_argument("--adaptive", default="--falloff visible --target-relmse 0.02")
+    parser.add_argument("--adaptive", default="--sampling adaptive --target-relmse 0.02")
     asked = parser.parse_args()
     bench = Bench(asked)
     rows = [row for text in asked.scene for row in bench.compare(*(lambda words: (words[0], words[1:]))(shlex.split(text)))]

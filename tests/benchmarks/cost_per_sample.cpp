@@ -103,7 +103,7 @@ int run(int argc, char** argv) {
   camera.projection.yfov_rad = options.fov_deg * kRadPerDeg;
   const CameraRays rays(camera, options.height_px);
   FoveationSettings uniform;
-  uniform.uniform_spp = options.spp;
+  uniform.spp = options.spp;
   const SamplingMap map = make_sampling_map(
       uniform, view_of_perspective(camera.projection.yfov_rad, options.width_px, options.height_px), {});
   const PixelFilterSampler filter(PixelFilter::box);

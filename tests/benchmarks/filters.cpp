@@ -134,7 +134,7 @@ void write_png(const std::string& path, const ImageRgb& light) {
 SamplingMap map_of(const Bench& bench, const std::string& kind, double scale) {
   FoveationSettings settings;
   const auto scaled = [&](std::uint32_t n) { return static_cast<std::uint32_t>(std::lround(n * scale)); };
-  for (std::uint32_t& n : settings.region_samples) {
+  for (std::uint32_t& n : std::get<RegionSampling>(settings.sampling).samples) {
     n = scaled(n);
   }
   const Vec3d ahead = bench.view.direction(0.5 * bench.options.width_px, 0.5 * bench.options.height_px);
@@ -144,7 +144,7 @@ SamplingMap map_of(const Bench& bench, const std::string& kind, double scale) {
   if (kind == "regions") {
     return make_sampling_map(settings, bench.view, ahead);
   }
-  settings.uniform_spp = scaled(static_cast<std::uint32_t>(std::strtoul(kind.c_str(), nullptr, 10)));
+  settings.spp = scaled(static_cast<std::uint32_t>(std::strtoul(kind.c_str(), nullptr, 10)));
   return make_sampling_map(settings, bench.view, std::nullopt);
 }
 

@@ -25,12 +25,12 @@ better than independent ones, so that raw samples are a little better than they 
 
 Costs are processor seconds a frame, without loading; those of the tool contain the frames that it traces before and after the
 clip for it. Those of raw frames follow from whole frames at 2 and 10 samples a pixel. The tool renders whole frames:
-`--falloff visible --filter guided --accumulate ...` at each budget, with the gaze, without any, and with the gaze where it was
+`--sampling adaptive --filter guided --accumulate ...` at each budget, with the gaze, without any, and with the gaze where it was
 not (at `--wrong-budget`, by `--wrong-seeds` seeds). Costs at a target are interpolated in their logarithm between the two
 budgets around it, and never beyond the smallest and the largest one. `--paper`: what the preset `paper` costs and scores, and
 what the tool scores at that cost. Pictures and scores that OUT_FOLDER holds are used again. Needs numpy, scipy and OpenEXR.
 
-`--tool-in-windows`, where whole frames are too dear: the tool chooses its rates for one whole frame (`--falloff visible`), and
+`--tool-in-windows`, where whole frames are too dear: the tool chooses its rates for one whole frame (`--sampling adaptive`), and
 the clip is traced with these rates in the windows only. What it would have cost follows from what tracing that whole frame took,
 its pilot included, for all frames that the clip reads (those after its end as well), and from what the clip took beside its
 samples, which it takes for the whole frame: learning of light, first hits, sums, filter, files. Raw frames cost what a whole
@@ -116,10 +116,10 @@ class Scene:
     def in_windows(self, name, frames, spp, seed):
         """Raw samples, `spp` of them a pixel within the windows."""
         if self.asked.whole:
-            return self.render(name, frames, *RAW, "--falloff", "uniform", "--spp", spp, "--seed", seed)
+            return self.render(name, frames, *RAW, "--sampling", "uniform", "--spp", spp, "--seed", seed)
         rates = self.folder / f"rates-{spp}.exr"
         write_exr(rates, {"Y": numpy.where(self.bench.windows.is_traced, spp, OUTSIDE_SPP)})
-        return self.render(name, frames, *RAW, "--falloff", "map", "--density-map", rates, "--seed", seed)
+        return self.render(name, frames, *RAW, "--density", rates, "--seed", seed)
 
     def halves(self, frame):
         """Two independent references of a frame. At rest each is the mean of four frames."""
@@ -140,7 +140,7 @@ class Scene:
         key = frame if self.asked.moving else 1
         if key not in self.fills:
             last = self.asked.frames if self.asked.moving else 1
-            folder = self.render("fill", f"1-{last}" if last > 1 else "1", "--falloff", "uniform", "--filter", "guided", "--spp", "4")
+            folder = self.render("fill", f"1-{last}" if last > 1 else "1", "--sampling", "uniform", "--filter", "guided", "--spp", "4")
             self.fills = {key: read_exr(folder / f"f.{key:04d}.exr")}
         return numpy.where(self.bench.windows.is_traced[..., None], numpy.maximum(picture, 0), self.fills[key])
 
@@ -193,13 +193,13 @@ class Scene:
 
     def loading(self):
         if "loading" not in self.costs:
-            self.costs["loading"] = run(self.asked.program, "render", *self.options, "--size", "8x8", *RAW, "--falloff", "uniform",
+            self.costs["loading"] = run(self.asked.program, "render", *self.options, "--size", "8x8", *RAW, "--sampling", "uniform",
                                         "--spp", "1", "--frames", "1", "--quiet", "--overwrite", "-o", self.folder / "loading.####.exr")
         return self.costs["loading"]
 
     def seconds_of_sample(self):
         """Of a raw whole frame's samples."""
-        self.render("raw-samples", "1", *RAW, "--falloff", "uniform", "--spp", "1")
+        self.render("raw-samples", "1", *RAW, "--sampling", "uniform", "--spp", "1")
         samples, seconds, _ = self.traced("raw-samples")
         return seconds / samples
 
@@ -210,7 +210,7 @@ class Scene:
     def rates(self, budget, looks_at, seed=0):
         """The rates that the tool chooses for a whole frame, its samples, and processor seconds of tracing it."""
         name = f"rates-of-{told(looks_at)}-{budget:g}{of_seed(seed)}"
-        folder = self.render(name, "1", "--falloff", "visible", "--budget-spp", f"{budget:g}", "--filter", "guided", "--max-block", "1",
+        folder = self.render(name, "1", "--sampling", "adaptive", "--spp", f"{budget:g}", "--filter", "guided", "--max-block", "1",
                              "--map", self.folder / f"{name}.exr", "--overwrite",
                              *(["--gaze-at", looks_at] if looks_at is not None else []), *seed_options(seed))
         assert folder.exists()
@@ -223,7 +223,7 @@ class Scene:
         path = self.folder / f"{name}.exr"
         write_exr(path, {"Y": numpy.where(self.bench.windows.is_traced, rates, OUTSIDE_SPP)})
         frames = self.asked.frames
-        folder = self.render(name, f"1-{frames}", "--falloff", "map", "--density-map", path, "--max-block", "1", "--filter", "guided",
+        folder = self.render(name, f"1-{frames}", "--density", path, "--max-block", "1", "--filter", "guided",
                              *(["--accumulate", *self.asked.accumulate.split()] if self.asked.accumulate != "off" else []),
                              *seed_options(seed))
         # How many frames were traced for those that are shown.
@@ -249,7 +249,7 @@ class Scene:
             for frames in ("1", "1-3"):
                 name = f"cost-{spp}-{frames}"
                 if name not in self.costs:
-                    shutil.rmtree(self.render(name, frames, *RAW, "--falloff", "uniform", "--spp", str(spp)))
+                    shutil.rmtree(self.render(name, frames, *RAW, "--sampling", "uniform", "--spp", str(spp)))
         of_frame = {spp: (self.costs[f"cost-{spp}-1-3"] - self.costs[f"cost-{spp}-1"]) / 2 for spp in (2, 10)}
         of_sample = (of_frame[10] - of_frame[2]) / 8
         fixed = max(of_frame[2] - 2 * of_sample, 0)
@@ -289,7 +289,7 @@ class Scene:
         if self.asked.tool_in_windows:
             return self.tool_in_windows(gaze, looks_at, budget, seed)
         name = f"tool-{self.asked.accumulate.replace(' ', '')}-{told(looks_at)}-{budget:g}{of_seed(seed)}"
-        options = ["--falloff", "visible", "--budget-spp", f"{budget:g}", "--filter", "guided", "--max-block", "1", *seed_options(seed)]
+        options = ["--sampling", "adaptive", "--spp", f"{budget:g}", "--filter", "guided", "--max-block", "1", *seed_options(seed)]
         options += ["--accumulate", *self.asked.accumulate.split()] if self.asked.accumulate != "off" else []
         options += ["--gaze-at", looks_at] if looks_at is not None else []
         cost, folder = self.frame_cost(name, *options)

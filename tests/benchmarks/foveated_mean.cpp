@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Is a foveated frame unbiased? Before reconstruction, and averaged over seeds, every fall-off model must have the same
+// Is a foveated frame unbiased? Before reconstruction, and averaged over seeds, every sampling must have the same
 // mean as uniform sampling in every band of eccentricity.
 //   gazetrace_foveated_mean SCENE.gltf[=SKY.hdr|=constant:R,G,B] ... [--seeds 256] [--size 160x90] [--spp 4]
 //   [--foveal-spp 32]
@@ -36,6 +36,7 @@
 #include "gazetrace/scene.hpp"
 #include "gazetrace/trace.hpp"
 #include "pixel_statistics.hpp"
+#include "support/sampling_models.hpp"
 #include "world.hpp"
 
 namespace {
@@ -211,7 +212,7 @@ void compare_model(PathTracer& tracer, const World& world, const Options& option
   const ImageGray probe = samples_per_pixel(make_sampling_map(settings, view, gaze));
   const auto probe_spp = static_cast<double>(*std::max_element(probe.pixels.begin(), probe.pixels.end()));
   if (probe_spp < options.foveal_spp) {
-    settings.budget_spp = *settings.budget_spp * options.foveal_spp / probe_spp;
+    settings.spp = *settings.spp * options.foveal_spp / probe_spp;
   }
   std::array<std::vector<double>, kBands> foveated;
   std::array<double, kBands> empty{};
@@ -394,18 +395,14 @@ int run(int argc, char** argv) {
     const World world = benchmark::load_world(text, options.viewpoint());
     PathTracer tracer(world.scene, {});
     const auto uniform = uniform_frames(tracer, world, options);
-    for (const FalloffInfo& info : falloffs()) {
-      if (info.from_picture || (!options.models.empty() && std::find(options.models.begin(), options.models.end(),
-                                                                     info.name) == options.models.end())) {
+    for (const std::string& name : all_models()) {
+      if (!options.models.empty() &&
+          std::find(options.models.begin(), options.models.end(), name) == options.models.end()) {
         continue;
       }
-      FoveationSettings settings;
-      settings.falloff = info.name;
-      settings.parameters.table = {"", {{0, 1}, {5, 0.5}, {20, 0.1}, {60, 0.02}}};
-      // So few pixels show little: measured against them, most models would be flat.
-      settings.parameters.normalization = FalloffNormalization::relative;
-      settings.budget_spp = options.spp;
-      compare_model(tracer, world, options, info.name, settings, uniform, all);
+      FoveationSettings settings = model_relative_to_fovea(name);
+      settings.spp = options.spp;
+      compare_model(tracer, world, options, name, settings, uniform, all);
     }
   }
   judge(all);

@@ -247,13 +247,13 @@ def others():
         ["render", "box.gltf", "--size", "8x8", "--config", "job.toml", "-o", "out/f.####.exr"]
     yield "job: 65535 x 65535 pixels", box, ["render", "box.gltf", "--size", "65535x65535", "-o", "out/f.exr"]
     yield "map: 60,000 x 100 by its head", {**box, "map.exr": exr_head(60_000, 100) + b"\1" * 3000}, \
-        [*render, "--falloff", "map", "--density-map", "map.exr"]
+        [*render, "--density", "map.exr"]
     yield "map: 100,000,000 x 4 by its head", {**box, "map.exr": exr_head(100_000_000, 4) + b"\1" * 3000}, \
-        [*render, "--falloff", "map", "--density-map", "map.exr"]
+        [*render, "--density", "map.exr"]
     grid = "\n".join(f"{key} = {list(range(1, 101))}" for key in ("spp", "bounces", "block-samples", "exposure-key"))
     yield "plan: a grid of 10^8 rows", {**box, "plan.toml": '[[scene]]\nname = "a"\npath = "box.gltf"\n[[gaze]]\nname = "m"\n'
                                         'at = [0.5, 0.5]\n[grid]\n' + grid}, ["sweep", "plan.toml", "-o", "s"]
-    yield "map: a picture of nothing", {**box, "map.exr": b"v/1\1" + b"\0" * 200}, [*render, "--falloff", "map", "--density-map", "map.exr"]
+    yield "map: a picture of nothing", {**box, "map.exr": b"v/1\1" + b"\0" * 200}, [*render, "--density", "map.exr"]
     history = ["--accumulate", "running", "--frames", "2", "--chunk", "1/1", "--resume-from", "history"]
     yield "checkpoint: zeros", {**box, "history": b"\0" * 10_000_000}, ["render", "box.gltf", "--size", "32x18", "-o", "out/f.####.exr", *history]
     yield "checkpoint: its first line alone", {**box, "history": b"gazetrace history 2, 00\n"}, ["render", "box.gltf", "--size", "32x18", "-o", "out/f.####.exr", *history]

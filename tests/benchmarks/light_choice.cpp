@@ -163,7 +163,7 @@ struct Row {
 
 SamplingMap map_of(const Camera& camera, const FrameSize& size, std::uint32_t spp) {
   FoveationSettings uniform;
-  uniform.uniform_spp = spp;
+  uniform.spp = spp;
   return make_sampling_map(uniform, view_of_perspective(camera.projection.yfov_rad, size.width_px, size.height_px), {});
 }
 

@@ -31,7 +31,7 @@ def run(*arguments):
 def fovea(program, reference, test, gaze, folder):
     record = folder / "scores.json"
     record.unlink(missing_ok=True)
-    run(program, "compare", reference, test, "--metrics", "relmse,flip", "--gaze-at", gaze, "--screen", "paper", "--region-angles", "5.2,17",
+    run(program, "compare", reference, test, "--metrics", "relmse,flip", "--gaze-at", gaze, "--screen", "paper", "--region-eccentricities", "2.6,8.5",
         "--anyway", "--json", record)
     return [score["regions"]["fovea"] for score in json.loads(record.read_text())["frames"][0]["scores"]]
 

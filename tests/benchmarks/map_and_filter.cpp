@@ -2,6 +2,7 @@
 // CPU time per 3840x2160 frame of what foveation adds around tracing: the sampling map, the filters, accumulation.
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -13,10 +14,14 @@
 namespace gazetrace {
 namespace {
 
-SamplingMap paper_map(bool foveated, AngleReading reading) {
+// The paper's angles as diameters and as radii.
+constexpr std::array<double, 2> kDiameter{2.6, 8.5};
+constexpr std::array<double, 2> kRadius{5.2, 17};
+
+SamplingMap paper_map(bool foveated, const std::array<double, 2>& ends_deg) {
   const PlanarView view = view_of_display(display_by_name("paper"), {}, 3840, 2160);
   FoveationSettings settings;
-  settings.reading = reading;
+  std::get<RegionSampling>(settings.sampling).eccentricities_deg = ends_deg;
   return make_sampling_map(settings, view, foveated ? std::optional(view.direction(1700.3, 900.7)) : std::nullopt);
 }
 
@@ -34,14 +39,14 @@ SparseFrame sparse_frame(const SamplingMap& map) {
   return sparse;
 }
 
-void bench_map(benchmark::State& state, bool foveated, AngleReading reading) {
+void bench_map(benchmark::State& state, bool foveated, const std::array<double, 2>& ends_deg) {
   for (auto _ : state) {
-    benchmark::DoNotOptimize(paper_map(foveated, reading));
+    benchmark::DoNotOptimize(paper_map(foveated, ends_deg));
   }
 }
 
-void bench_filter(benchmark::State& state, bool foveated, AngleReading reading, const char* filter) {
-  const SamplingMap map = paper_map(foveated, reading);
+void bench_filter(benchmark::State& state, bool foveated, const std::array<double, 2>& ends_deg, const char* filter) {
+  const SamplingMap map = paper_map(foveated, ends_deg);
   const SparseFrame sparse = sparse_frame(map);
   const Reconstruction reconstruction({filter});
   for (auto _ : state) {
@@ -50,7 +55,7 @@ void bench_filter(benchmark::State& state, bool foveated, AngleReading reading, 
 }
 
 void bench_accumulate(benchmark::State& state) {
-  const SamplingMap map = paper_map(true, AngleReading::full_angle);
+  const SamplingMap map = paper_map(true, kDiameter);
   Frame frame = Reconstruction({"none"}).frame(sparse_frame(map), map, nullptr, 1);
   TemporalHistory history;
   for (auto _ : state) {
@@ -58,8 +63,6 @@ void bench_accumulate(benchmark::State& state) {
   }
 }
 
-constexpr auto kDiameter = AngleReading::full_angle;
-constexpr auto kRadius = AngleReading::eccentricity;
 BENCHMARK_CAPTURE(bench_map, diameter, true, kDiameter)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(bench_map, radius, true, kRadius)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(bench_map, uniform, false, kDiameter)->Unit(benchmark::kMillisecond);

@@ -45,7 +45,7 @@ class Bench:
         return numpy.stack([luminance(folder / f"f.{k:04d}.exr") for k in range(1, self.asked.seeds + 1)])
 
     def render(self, samples, seed):
-        return self.run(self.out / f"{samples}-{seed}", "render", *shlex.split(self.asked.scene), "--falloff", "uniform",
+        return self.run(self.out / f"{samples}-{seed}", "render", *shlex.split(self.asked.scene), "--sampling", "uniform",
                         "--filter", "none", "--exr-pixels", "float", "--size", self.asked.size, "--exposure", "0", "--fps", "24",
                         "--frames", f"1-{self.asked.seeds}", "--quiet", "--spp", samples, "--seed", seed)
 

@@ -90,7 +90,7 @@ double median(std::vector<double> values) {
 int main(int argc, char** argv) {
   const int rounds = argc > 2 && std::string_view(argv[1]) == "--rounds" ? std::atoi(argv[2]) : 7;
   FoveationSettings uniform;
-  uniform.uniform_spp = 4;
+  uniform.spp = 4;
   const SamplingMap map = make_sampling_map(uniform, view_of_perspective(50 * kRadPerDeg, 320, 180), {});
   Camera camera;
   camera.pose = look_at({4, 2.5, 5}, {0, 0.3, 0}, {0, 1, 0});

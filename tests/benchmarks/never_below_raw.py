@@ -38,7 +38,7 @@ STUDENT = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228
 METRICS = ("fovvideovdp", "flip", "relmse")
 # How much worse than `none` a filtered frame may be: in JOD, and in shares of the error.
 LIMITS = {"fovvideovdp": 0.02, "flip": 0.01, "relmse": 0.01}
-LAYOUTS = {"uniform": ["--falloff", "uniform"], "foveated": ["--preset", "default"]}
+LAYOUTS = {"uniform": ["--sampling", "uniform"], "foveated": ["--preset", "default"]}
 FEW = 4  # samples a pixel up to which nothing may be given away
 LEAST_SHARE = 0.95
 
@@ -125,7 +125,7 @@ class Bench:
         program = self.asked.earlier if earlier else self.asked.program
         seeds = self.seeds(rate)
         folder = self.render(program, self.out / name / f"{layout}-{rate:g}-{column}", scene, *LAYOUTS[layout],
-                             "--budget-spp", f"{rate:g}", "--filter",
+                             "--spp", f"{rate:g}", "--filter",
                              self.asked.filter if earlier else column, "--frames", f"1-{seeds}")
         by_seed = [self.scores(self.out / name / "reference", folder / f"f.{k:04d}.exr") for k in range(1, seeds + 1)]
         return {metric: [scores[metric] for scores in by_seed] for metric in METRICS}

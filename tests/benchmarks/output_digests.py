@@ -41,9 +41,9 @@ RENDERS = {
     "guided-uniform": [*STILL, "--spp", "2", "--filter", "guided"],
     "preset-paper": [*STILL, *GAZE_AT, "--preset", "paper", "--region-samples", "8,4,2"],
     "preset-default": [*STILL, *GAZE_AT, "--preset", "default"],
-    "falloff-acuity": [*STILL, *GAZE_AT, "--falloff", "acuity", "--budget-spp", "2", "--filter", "linear"],
-    "falloff-log-polar": [*STILL, *GAZE_AT, "--falloff", "log-polar", "--spp", "8"],
-    "falloff-geisler-perry": [*STILL, *GAZE_AT, "--falloff", "geisler-perry", "--spp", "8"],
+    "density-acuity": [*STILL, *GAZE_AT, "--density", "acuity", "--spp", "2", "--filter", "linear"],
+    "density-log-polar": [*STILL, *GAZE_AT, "--density", "log-polar"],
+    "density-geisler-perry": [*STILL, *GAZE_AT, "--density", "geisler-perry", "--spp", "8"],
     "walk": [*WALK, *SMALL, "--filter", "linear"],
     "walk-guided": [*WALK, *SMALL],
     "accumulate-reproject": [*WALK, *SMALL, "--accumulate", "reproject"],
@@ -67,7 +67,7 @@ PLANS = {
     "plan": [*WALK[:-2], "--json"],
     "plan-text": WALK[:-2],
     "plan-counts": ["--counts", "--gaze-at", "0.3,0.6", "--screen", "paper", "--size", "3840x2160"],
-    "plan-counts-model": ["--counts", "--falloff", "geisler-perry", "--budget-spp", "1", "--gaze-at", "0.3,0.6",
+    "plan-counts-model": ["--counts", "--density", "geisler-perry", "--spp", "1", "--gaze-at", "0.3,0.6",
                           "--screen", "paper", "--size", "1280x720"],
 }
 SWEEP = """title = "Two rates"
@@ -172,7 +172,7 @@ def compare_job(program, book):
 
 
 def timing_job(book):
-    for name in ["walk", "accumulate-reproject", "falloff-acuity"]:
+    for name in ["walk", "accumulate-reproject", "density-acuity"]:
         for path in sorted((book.folder / name).glob("*timing*.csv")):
             book.text(f"counts of {name}", counted_columns(path), exact=True)
 

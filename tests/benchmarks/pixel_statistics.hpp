@@ -38,7 +38,7 @@ inline double average(const std::vector<double>& values) {
 inline PixelStatistics measure(const PosedScene& scene, TraceSettings settings, const View& view, int seeds,
                                std::uint32_t spp, int first_seed = 1) {
   FoveationSettings uniform;
-  uniform.uniform_spp = spp;
+  uniform.spp = spp;
   Camera camera;
   camera.pose = look_at(view.eye, view.target, {0, 1, 0});
   camera.projection.yfov_rad = view.yfov_rad;

@@ -118,7 +118,7 @@ int run(int argc, char** argv) {
     return FrameRenderer(tracer, settings).render(request, history);
   };
   FrameSettings settings = resolved.pipeline;
-  settings.foveation.falloff = "uniform";
+  settings.foveation.sampling = UniformSampling{};
   settings.trace.learn_light = false;
   const RenderedFrame best = render(settings, 1000003);
   settings.trace.learn_light = resolved.pipeline.trace.learn_light;
@@ -135,10 +135,10 @@ int run(int argc, char** argv) {
   fmt::print("{}x{} pixels, {:.1f} a degree, filter {}, reference of {} spp\n{:>6}{:>10}{:>8}{:>8}{:>11}{:>8}\n",
              view.width_px, view.height_px, metric_settings.geometry.pixels_per_degree(),
              settings.reconstruction.filter, argv[1], "spp", "measured", "truth", "white", "reference", "frame");
-  settings.foveation.falloff = resolved.pipeline.foveation.falloff;
+  settings.foveation.sampling = resolved.pipeline.foveation.sampling;
   for (char* rest = argv[2]; *rest != '\0'; rest += *rest == ',' ? 1 : 0) {
     const auto spp = static_cast<std::uint32_t>(std::strtoul(rest, &rest, 10));
-    settings.foveation.uniform_spp = spp;
+    settings.foveation.spp = spp;
     FovVideoVdp metric(metric_settings, view.width_px, view.height_px);
     std::vector<ImageGray> frames;
     std::vector<double> measured;

@@ -3,7 +3,7 @@
 """Does a stated quality come out? Clips are rendered by `--target-jod`, and measured against a reference.
 
   stated_quality.py GAZETRACE OUT_FOLDER --scene "NAME FILE OPTIONS" [--scene ...] [--targets 8.5,9]
-                    [--filters none] [--falloffs uniform] [--gazes "0.5,0.5 0.25,0.6"] [--size 256x144] [--ppd 28]
+                    [--filters none] [--samplings uniform] [--gazes "0.5,0.5 0.25,0.6"] [--size 256x144] [--ppd 28]
                     [--frames 24] [--reference-spp 4096] [--seed 1] [--with "--accumulate two-sided --accumulate-window 11"]
                     [--pyfvvdp]
 
@@ -60,7 +60,7 @@ class Bench:
         folder = self.out / name / "reference"
         half = str(self.asked.reference_spp // 2)
         for k, seed in enumerate((700001, 700002)):
-            self.render(self.out / name / f"half{k}", scene, "0.5,0.5", "--frames", "1", "--falloff", "uniform", "--filter",
+            self.render(self.out / name / f"half{k}", scene, "0.5,0.5", "--frames", "1", "--sampling", "uniform", "--filter",
                         "none", "--no-learn-light", "--spp", half, "--seed", str(seed))
         if not folder.exists():
             folder.mkdir()
@@ -122,10 +122,10 @@ def exposure_of(scene):
     return scene[scene.index("--exposure") + 1] if "--exposure" in scene else "0"
 
 
-def judge(bench, name, scene, gaze, falloff, filter_name, target):
+def judge(bench, name, scene, gaze, sampling, filter_name, target):
     asked = bench.asked
-    folder = bench.out / name / f"jod-{gaze.replace(',', '_')}-{falloff}-{filter_name}-{target}"
-    bench.render(folder, scene, gaze, "--frames", f"1-{asked.frames}", "--falloff", falloff, "--filter", filter_name,
+    folder = bench.out / name / f"jod-{gaze.replace(',', '_')}-{sampling}-{filter_name}-{target}"
+    bench.render(folder, scene, gaze, "--frames", f"1-{asked.frames}", "--sampling", sampling, "--filter", filter_name,
                  "--target-jod", target, "--seed", str(asked.seed), *shlex.split(asked.options), *bench.view())
     with open(folder / "f.timing.csv", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -146,7 +146,7 @@ def main():
     parser.add_argument("--scene", action="append", required=True)
     parser.add_argument("--targets", default="8.5,9")
     parser.add_argument("--filters", default="none")
-    parser.add_argument("--falloffs", default="uniform")
+    parser.add_argument("--samplings", default="uniform")
     parser.add_argument("--gazes", default="0.5,0.5 0.25,0.6")
     parser.add_argument("--size", default="256x144")
     parser.add_argument("--ppd", default="28")
@@ -157,7 +157,7 @@ def main():
     parser.add_argument("--pyfvvdp", action="store_true")
     asked = parser.parse_args()
     bench = Bench(asked)
-    print(f"{'scene':<14}{'gaze':>10} {'falloff':<9}{'filter':<8}{'stated':>7}{'predicted':>10}{'measured':>9}{'off':>7}"
+    print(f"{'scene':<14}{'gaze':>10} {'sampling':<9}{'filter':<8}{'stated':>7}{'predicted':>10}{'measured':>9}{'off':>7}"
           f"{'spp':>9}{'pilot':>7}{'pyfvvdp':>9}")
     off = {}
     pilots = []
@@ -167,12 +167,12 @@ def main():
         floor = bench.score(*(bench.out / name / f"half{k}" for k in range(2)), "0.5,0.5", "1", exposure_of(scene))
         print(f"{name}: the halves of the reference score {floor:.4g} JOD against each other, as a still")
         for gaze in asked.gazes.split():
-            for falloff in asked.falloffs.split(","):
+            for sampling in asked.samplings.split(","):
                 for filter_name in asked.filters.split(","):
                     for target in asked.targets.split(","):
-                        place = f"{name:<14}{gaze:>10} {falloff:<9}{filter_name:<8}{float(target):7.4g}"
+                        place = f"{name:<14}{gaze:>10} {sampling:<9}{filter_name:<8}{float(target):7.4g}"
                         try:
-                            predicted, measured, theirs, spp, pilot = judge(bench, name, scene, gaze, falloff, filter_name, target)
+                            predicted, measured, theirs, spp, pilot = judge(bench, name, scene, gaze, sampling, filter_name, target)
                         except RuntimeError as problem:
                             print(f"{place} {problem}", flush=True)
                             continue

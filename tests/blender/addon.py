@@ -215,7 +215,7 @@ class Runs(AddOnTest):
     def test_the_view_is_that_of_the_scene(self):
         self.settings.display_pictures = True
         self.scene.view_settings.exposure = 1.5
-        self.further('falloff = "uniform"\n')
+        self.further('sampling = "uniform"\n')
         self.picture()
         linear = bpy.data.images.load(str(self.folder / "gazetrace" / "frame.0011.exr"), check_existing=False)
         self.scene.render.image_settings.file_format = "PNG"
@@ -226,7 +226,7 @@ class Runs(AddOnTest):
         self.assertLessEqual(np.abs(ours - blenders).max(), 2.01 / 255)
 
     def test_the_programs_own_words_reach_the_user(self):
-        self.further('falloff = "nonsense"\n')
+        self.further('density = "nonsense"\n')
         with self.assertRaises(RuntimeError) as caught:
             bpy.ops.gazetrace.render()
         self.assertIn("nonsense", str(caught.exception))
@@ -290,7 +290,7 @@ class Light(AddOnTest):
         tree.links.new(mapping.outputs["Vector"], texture.inputs["Vector"])
         tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
         tree.nodes["Background"].inputs["Strength"].default_value = 2
-        self.further('falloff = "uniform"\nfilter = "none"\n')
+        self.further('sampling = "uniform"\nfilter = "none"\n')
         self.settings.samples = 32
         camera = self.scene.camera
         # The direction of the bright place: columns 30 to 34 of 128, rows 20 to 24 of 64 from below.
@@ -321,7 +321,7 @@ class Light(AddOnTest):
         bpy.context.object.data.materials.append(material)
         camera = self.scene.camera
         camera.location, camera.rotation_euler = (0, 0, 5), (0, 0, 0)
-        self.further('falloff = "uniform"\nfilter = "none"\ndiffuse = "lambert"\nbounces = 1\n')
+        self.further('sampling = "uniform"\nfilter = "none"\ndiffuse = "lambert"\nbounces = 1\n')
         self.settings.samples = 64
         # Cycles of Blender 3.4 darkens a spot by the cosine of the angle to its axis, which glTF cannot say: near the axis
         # the two agree.
@@ -374,7 +374,7 @@ class Bones(AddOnTest):
         scenes.key(moved, "value", 30, 1.0)
         self.scene.render.resolution_x, self.scene.render.resolution_y = 160, 90
         self.scene.render.fps_base = 1.25
-        self.further('falloff = "uniform"\nfilter = "none"\nbounces = 0\n')
+        self.further('sampling = "uniform"\nfilter = "none"\nbounces = 0\n')
         self.settings.samples = 64
         self.save()
         self.assertEqual(bpy.ops.gazetrace.render(), {"FINISHED"})

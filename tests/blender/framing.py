@@ -43,7 +43,7 @@ def render_by_cycles(scene: bpy.types.Scene, folder: Path) -> dict[int, np.ndarr
 def render_by_gazetrace(scene: bpy.types.Scene, folder: Path) -> dict[int, np.ndarray]:
     """The same by the add-on."""
     scene.gazetrace.gaze_source = "NONE"
-    scene.gazetrace.falloff = "uniform"
+    scene.gazetrace.sampling = "uniform"
     scene.gazetrace.filter = "none"
     scene.gazetrace.samples = SAMPLES
     further = bpy.data.texts.new("further")

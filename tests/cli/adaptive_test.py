@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""--falloff visible: rates by a pilot, on a budget or until a target is expected to be met."""
+"""--sampling adaptive: rates by a pilot, on a budget or until a target is expected to be met."""
 
 import csv
 import json
@@ -8,8 +8,8 @@ import shutil
 import harness
 
 GAZE = ["--gaze-at", "0.5,0.5", "--screen-px", "64,40", "--screen-ppd", "12"]
-RAW = [*GAZE, "--falloff", "uniform", "--filter", "none"]
-VIEW = ["--size", "64x40", "--eye", "0,0,3", "--target", "0,0,0", "--quiet", "--falloff", "visible"]
+RAW = [*GAZE, "--sampling", "uniform", "--filter", "none"]
+VIEW = ["--size", "64x40", "--eye", "0,0,3", "--target", "0,0,0", "--quiet", "--sampling", "adaptive"]
 
 
 class Adaptive(harness.CliTest):
@@ -25,7 +25,7 @@ class Adaptive(harness.CliTest):
         return self.rows(folder)
 
     def test_budgets_and_targets(self):
-        row, = self.render("budget", "--budget-spp", "9")
+        row, = self.render("budget", "--spp", "9")
         self.assertAlmostEqual(int(row["samples"]), 9 * 64 * 40, delta=2)
         self.assertGreater(int(row["pilot_samples"]), 0)
         self.assertGreater(float(row["pilot_ms"]), 0)
@@ -40,13 +40,13 @@ class Adaptive(harness.CliTest):
     def test_pilots_leave_a_frame(self):
         # The budgets where a second pilot would have taken what the first one left.
         for budget in ("2.05", "2.1", "2.2", "2.5"):
-            row, = self.render(f"small-{budget}", "--budget-spp", budget)
+            row, = self.render(f"small-{budget}", "--spp", budget)
             self.assertLessEqual(int(row["pilot_samples"]), 2 * 64 * 40, budget)
             self.assertAlmostEqual(int(row["samples"]), float(budget) * 64 * 40, delta=2)
         # Errors fall with the budget: about as one over it, and never the other way.
         errors = []
         for budget in ("1", "4", "16"):
-            self.run_ok("render", "box.gltf", *VIEW[2:], "--size", "320x256", "--budget-spp", budget, "--filter", "none", "-o",
+            self.run_ok("render", "box.gltf", *VIEW[2:], "--size", "320x256", "--spp", budget, "--filter", "none", "-o",
                         f"error-{budget}/f.exr")
             errors.append(float(self.rows(f"error-{budget}")[0]["predicted_relmse"]))
         for more, fewer in zip(errors[1:], errors):
@@ -134,7 +134,7 @@ class Adaptive(harness.CliTest):
             return json.loads((self.folder / f"{test}.json").read_text())["sequence"][0]["scores"][0]["value"]
 
         for name, more in (("default", []), ("pixels", ["--max-block", "1"]), ("blocks", ["--max-block", "4"])):
-            self.render(name, *GAZE, "--budget-spp", "3", "--frames", "1-3", "--accumulate", "two-sided", *more)
+            self.render(name, *GAZE, "--spp", "3", "--frames", "1-3", "--accumulate", "two-sided", *more)
         self.assertEqual(difference("pixels"), 0)
         self.assertGreater(difference("blocks"), 0)
 
@@ -152,7 +152,7 @@ class Adaptive(harness.CliTest):
         for limit, is_told in ((None, True), ("4", False)):
             folder = f"blocks-{limit}"
             more = ["--max-block", limit] if limit else []
-            self.run_ok("render", "box.gltf", *VIEW, "--budget-spp", "3", "--accumulate", "two-sided", *more, "--frames", "1-2", "-o",
+            self.run_ok("render", "box.gltf", *VIEW, "--spp", "3", "--accumulate", "two-sided", *more, "--frames", "1-2", "-o",
                         f"{folder}/f.####.exr")
             self.assertEqual("max-block" in self.record(folder)["facts"], is_told)
 
@@ -166,13 +166,13 @@ class Adaptive(harness.CliTest):
         # deviation, by twelve of these clips.
         gaze = ["--gaze-at", "0.5,0.5", "--screen-px", "160,100", "--screen-ppd", "12"]
         view = ["--size", "160x100", *VIEW[2:-2], *gaze]
-        tool = [*view, "--falloff", "visible", "--max-block", "1", "--filter", "guided", "--accumulate", "two-sided",
+        tool = [*view, "--sampling", "adaptive", "--max-block", "1", "--filter", "guided", "--accumulate", "two-sided",
                 "--accumulate-window", "4"]
 
         def clip(folder, frames, *more):
             self.run_ok("render", "box.gltf", *tool, "--frames", frames, *more, "-o", f"{folder}/f.####.exr")
 
-        self.run_ok("render", "box.gltf", *view, "--falloff", "uniform", "--filter", "none", "--frames", "1", "--spp", "4096", "--seed", "9",
+        self.run_ok("render", "box.gltf", *view, "--sampling", "uniform", "--filter", "none", "--frames", "1", "--spp", "4096", "--seed", "9",
                     "-o", "reference/f.0001.exr")
         for frame in range(2, 25):
             shutil.copy(self.folder / "reference/f.0001.exr", self.folder / f"reference/f.{frame:04d}.exr")
@@ -209,26 +209,26 @@ class Adaptive(harness.CliTest):
         self.write("glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1.0)))
         gaze = ["--gaze-at", "0.5,0.5", "--screen-px", "96,60", "--screen-ppd", "12"]
         view = ["render", "glide.gltf", "--size", "96x60", *gaze, "--fps", "24", "--quiet"]
-        self.run_ok(*view, "--falloff", "uniform", "--filter", "none", "--spp", "1024", "--seed", "9", "-o", "reference/f.####.exr")
+        self.run_ok(*view, "--sampling", "uniform", "--filter", "none", "--spp", "1024", "--seed", "9", "-o", "reference/f.####.exr")
         frames = len(self.pictures("reference"))
-        # In frames as small as these, the pilots that `visible` makes of each are more than the quality takes.
-        for falloff, filter_name in (("uniform", "none"), ("uniform", "guided")):
-            folder = f"{falloff}-{filter_name}"
-            self.run_ok(*view, "--falloff", falloff, "--filter", filter_name, "--target-jod", "8.5", "-o", f"{folder}/f.####.exr")
+        # In frames as small as these, the pilots that `adaptive` makes of each are more than the quality takes.
+        for sampling, filter_name in (("uniform", "none"), ("uniform", "guided")):
+            folder = f"{sampling}-{filter_name}"
+            self.run_ok(*view, "--sampling", sampling, "--filter", filter_name, "--target-jod", "8.5", "-o", f"{folder}/f.####.exr")
             self.assertAlmostEqual(self.measured_jod("reference", folder, f"1-{frames}", gaze), 8.5, delta=0.15)
 
     def test_a_stated_quality_names_what_nobody_has_named(self):
         view = [*VIEW[:-3], *GAZE]
         for quality in (["--target-jod", "8"], ["--target-relmse", "0.02"]):
             told = self.run_ok("render", "box.gltf", *view, *quality, "-o", "open/f.exr", "--overwrite").stderr
-            self.assertIn("falloff: visible, since a quality is stated", told)
-            self.run_ok("render", "box.gltf", *view, *quality, "--falloff", "visible", "-o", "named/f.exr", "--overwrite")
+            self.assertIn("sampling: adaptive, since a quality is stated", told)
+            self.run_ok("render", "box.gltf", *view, *quality, "--sampling", "adaptive", "-o", "named/f.exr", "--overwrite")
             self.assertEqual(self.pictures("open"), self.pictures("named"), quality)
-            self.assertIn('falloff = "visible"', self.record("open")["config_toml"])
+            self.assertIn('sampling = "adaptive"', self.record("open")["config_toml"])
         # What is named stays.
-        told = self.run_ok("render", "box.gltf", *view, "--falloff", "cortical", "--target-jod", "8", "-o", "cortical/f.exr").stderr
+        told = self.run_ok("render", "box.gltf", *view, "--density", "cortical", "--target-jod", "8", "-o", "cortical/f.exr").stderr
         self.assertNotIn("since a quality", told)
-        self.assertIn('falloff = "cortical"', self.record("cortical")["config_toml"])
+        self.assertIn('density = "cortical"', self.record("cortical")["config_toml"])
 
     def test_a_view_at_rest_is_told_what_it_could_share(self):
         view = [*VIEW[:-3], *GAZE, "--target-jod", "7", "--frames", "1-2"]
@@ -249,20 +249,20 @@ class Adaptive(harness.CliTest):
         # A refusal leaves nothing behind that the next command would meet.
         render = ["render", "box.gltf", "--size", "64x40", "-o", "x/x.exr", "--quiet"]
         for words, *arguments in [
-            (["--target-relmse", "visible"], "--falloff", "regions", "--target-relmse", "0.01"),
-            (["--target-relmse", "budget"], "--falloff", "visible", "--target-relmse", "0.1", "--budget-spp", "3"),
-            (["--target-relmse"], "--falloff", "visible", "--target-relmse", "0"),
-            (["--min-spp"], "--falloff", "visible", "--min-spp", "5", "--max-spp", "4"),
-            (["--budget-spp", "pilot"], "--falloff", "visible", "--budget-spp", "0.01"),
+            (["--target-relmse", "visible"], "--sampling", "regions", "--target-relmse", "0.01"),
+            (["--target-relmse", "budget"], "--sampling", "adaptive", "--target-relmse", "0.1", "--spp", "3"),
+            (["--target-relmse"], "--sampling", "adaptive", "--target-relmse", "0"),
+            (["--min-spp"], "--sampling", "adaptive", "--min-spp", "5", "--max-spp", "4"),
+            (["--spp", "pilot"], "--sampling", "adaptive", "--spp", "0.01"),
             (["--target-jod", "eye"], "--target-jod", "9"),
-            (["--target-jod", "regions"], *GAZE, "--falloff", "regions", "--target-jod", "9"),
+            (["--target-jod", "regions"], *GAZE, "--sampling", "regions", "--target-jod", "9"),
             (["--target-jod", "regions"], *GAZE, "--preset", "paper", "--target-jod", "9"),
             (["--target-jod", "only-pixel"], *RAW, "--target-jod", "9", "--only-pixel", "3,4"),
-            (["--target-jod", "density-map"], *GAZE, "--falloff", "map", "--density-map", "d.####.exr", "--target-jod", "9"),
+            (["--target-jod", "--density"], *GAZE, "--density", "d.####.exr", "--target-jod", "9"),
             (["--target-jod", "9.5"], *RAW, "--target-jod", "10"),
-            (["--target-jod", "budget"], *RAW, "--target-jod", "9", "--budget-spp", "3"),
+            (["--target-jod", "--spp"], *RAW, "--target-jod", "9", "--spp", "3"),
             (["--target-jod", "accumulate"], *RAW, "--target-jod", "9", "--accumulate", "running"),
-            (["--target-jod", "max-spp"], *GAZE, "--falloff", "visible", "--target-jod", "9.99", "--max-spp", "4"),
+            (["--target-jod", "max-spp"], *GAZE, "--sampling", "adaptive", "--target-jod", "9.99", "--max-spp", "4"),
             (["--target-jod", "about"], *RAW, "--target-jod", "9.99", "--max-spp", "10"),
             (["--target-jod", "resets"], *RAW, "--target-jod", "9", "--accumulate", "two-sided",
              "--accumulate-reset-saccades"),
@@ -278,7 +278,7 @@ class Adaptive(harness.CliTest):
                 for word in words:
                     self.assertIn(word, result.stderr)
                 self.assertEqual(self.files("x"), [])
-        counts = self.run_program("plan", "--counts", "--size", "64x40", "--falloff", "visible")
+        counts = self.run_program("plan", "--counts", "--size", "64x40", "--sampling", "adaptive")
         self.assertEqual(counts.returncode, 2)
         self.assertIn("pilot", counts.stderr)
 

@@ -254,8 +254,8 @@ class BadOptions(harness.CliTest):
             ("--frames", "5-1", ["--frames"]), ("--frames", "0", ["--frames"]), ("--frames", "x", ["--frames"]),
             ("--gaze-max-age", "50", ["--gaze-max-age", "unit"]), ("--gaze-max-age", "1.5ns", ["nanosecond"]),
             ("--gaze-max-age", "-1s", ["--gaze-max-age"]), ("--gaze-mode", "holdd", ["hold"]),
-            ("--region-samples", "1,2", ["--region-samples"]), ("--region-angles", "17,5.2", ["angle"]),
-            ("--region-blocks", "0,4", ["block"]), ("--falloff", "region", ["regions"]), ("--filter", "liner", ["linear"]),
+            ("--region-samples", "1,2", ["--region-samples"]), ("--region-eccentricities", "8.5,2.6", ["angle"]),
+            ("--region-blocks", "0,4", ["block"]), ("--density", "region", ["regions"]), ("--filter", "liner", ["linear"]),
             ("--bounces", "-1", ["--bounces"]), ("--threads", "-1", ["--threads"]), ("--seed", "-1", ["--seed"]),
             ("--exposure", "bright", ["--exposure"]), ("--yfov", "180", ["--yfov"]), ("--env", "constant:1,2", ["--env"]),
             ("--env", "constant:-1,0,0", ["negative"]), ("--only-pixel", "64,0", ["--only-pixel", "64x36"]),
@@ -282,7 +282,7 @@ class BadOptions(harness.CliTest):
         self.assert_refused(["gaze", "inspekt", "log.csv"], ["inspekt", "did you mean 'inspect'"])
         self.assert_refused(["gaze", "inspect", "log.csv", "--jsom"], ["did you mean '--json'", "gazetrace gaze inspect --help"])
         self.assert_refused(["merge", "."], ["parts"])
-        self.assert_refused(["list", "falofs"], ["falloffs"])
+        self.assert_refused(["list", "densites"], ["densities"])
         self.assert_refused(["plan"], ["scene"])
 
 

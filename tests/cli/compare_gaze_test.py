@@ -23,8 +23,8 @@ class CompareGaze(harness.CliTest):
 
     def test_gaze_of_the_test_where_the_reference_has_none(self):
         self.write("gaze.csv", harness.moving_gaze())
-        self.render("none", "--falloff", "uniform", "--spp", "8", "--seed", "1")
-        self.render("same", "--falloff", "uniform", "--spp", "8", "--seed", "1", "--gaze", "gaze.csv")
+        self.render("none", "--sampling", "uniform", "--spp", "8", "--seed", "1")
+        self.render("same", "--sampling", "uniform", "--spp", "8", "--seed", "1", "--gaze", "gaze.csv")
         self.render("fov", "--seed", "2", "--gaze", "gaze.csv")
         for suffix in ("exr", "png"):
             found, result = self.scores(f"none/p.####.{suffix}", f"fov/p.####.{suffix}", "--metrics", "flip,fovvideovdp")
@@ -36,7 +36,7 @@ class CompareGaze(harness.CliTest):
                 self.assertEqual(found[name], wanted[name])
 
     def test_two_gazes_must_agree(self):
-        fixed = ["--falloff", "uniform", "--spp", "1", "--seed", "1"]
+        fixed = ["--sampling", "uniform", "--spp", "1", "--seed", "1"]
         self.render("left", *fixed, "--gaze-at", "0.25,0.5")
         self.render("right", *fixed, "--gaze-at", "0.75,0.5")
         for suffix in ("exr", "png"):

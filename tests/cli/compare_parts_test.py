@@ -11,7 +11,7 @@ gaze = "log.csv"
 size = "64x36"
 fps = 24
 region-samples = [8, 2, 1]
-region-angles = [4, 9]  # diameters
+region-eccentricities = [2, 4.5]  # diameters
 filter = "linear"
 exposure = "0"
 screen-px = [64, 36]
@@ -27,7 +27,7 @@ class CompareParts(harness.CliTest):
         self.write("glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1.0)))
         self.write("log.csv", harness.moving_gaze())
         self.write("job.toml", JOB_TOML)
-        self.render("ref", "--frames", "1-4", "--falloff", "uniform", "--spp", "16", "--seed", "9")
+        self.render("ref", "--frames", "1-4", "--sampling", "uniform", "--spp", "16", "--seed", "9")
 
     def render(self, folder, *more):
         self.run_ok("render", "--config", "job.toml", "-o", f"{folder}/p.####.exr", "-o", f"{folder}/p.####.png", *more)
@@ -78,7 +78,7 @@ class CompareParts(harness.CliTest):
             self.render("parts", "--frames", frames, "--chunk", "1/1")
         self.run_ok("merge", "parts")
         self.assertIn("fovea to 2 deg", self.compare("ref", "parts")["conditions"]["regions"])
-        self.render("other", "--frames", "1-4", "--region-angles", "6,12")
+        self.render("other", "--frames", "1-4", "--region-eccentricities", "3,6")
         for name, content in self.pictures("other").items():
             (self.folder / "parts" / name).write_bytes(content)
         self.assertNotIn("fovea to 2 deg", self.compare("ref", "parts")["conditions"]["regions"])

@@ -60,7 +60,7 @@ class Compare(harness.CliTest):
         self.assertLess(scores["mse"]["weighted"], scores["mse"]["value"])
 
     def test_rendered_sequences(self):
-        self.render("ref", "--falloff", "uniform", "--spp", "16", "--seed", "1")
+        self.render("ref", "--sampling", "uniform", "--spp", "16", "--seed", "1")
         self.render("fov", "--seed", "2")
         metrics = "mse,rmse,relmse,smape,psnr,ssim,flip,hdr_flip,fovvideovdp"
         scores, result = self.compare("ref/p.####.exr", "fov/p.####.exr", "--metrics", metrics, "--csv", "out.csv",
@@ -105,7 +105,7 @@ class Compare(harness.CliTest):
 
         self.write("gaze.csv", harness.gaze_csv(row(i) for i in range(300)))
         common = ["render", "box.gltf", "--gaze", "gaze.csv", "--size", "64x36", "--frames", "1-36", "--fps", "24", "--quiet",
-                  "--falloff", "uniform", *harness.SCREEN]
+                  "--sampling", "uniform", *harness.SCREEN]
         self.run_ok(*common, "--spp", "4", "--seed", "1", "-o", "a/p.####.exr", "-o", "a/p.####.png")
         self.run_ok(*common, "--spp", "1", "--seed", "2", "-o", "b/p.####.exr", "-o", "b/p.####.png")
         expected = []
@@ -153,7 +153,7 @@ class Compare(harness.CliTest):
         self.run_ok(*pair, "--metrics", "flicker", "--gaze-at", "0.5,0.5")
         self.assert_refused([*pair, "--metrics", "flicker", "--gaze-at", "0.5,0.5", "--frames", "1-7"], ["7 frames at 8"])
         self.assert_refused([*pair, "--metrics", "temporal_bias", "--frames", "1-3,5-8"], ["missing"])
-        self.assert_refused([*pair, "--region-angles", "9,3"], ["--region-angles"])
+        self.assert_refused([*pair, "--region-eccentricities", "4.5,1.5"], ["--region-eccentricities"])
 
     def test_exit_code_over_a_limit(self):
         self.write("a.png", harness.png(32, 32, grey(100)))
@@ -219,14 +219,14 @@ class Compare(harness.CliTest):
         self.assert_refused([*pair, "--maps", "maps"], ["maps/flip.0000.png", "--overwrite"])
 
     def test_views_must_agree(self):
-        self.render("a", "--spp", "1", "--falloff", "uniform")
-        self.render("b", "--spp", "1", "--falloff", "uniform", "--preset", "paper")
+        self.render("a", "--spp", "1", "--sampling", "uniform")
+        self.render("b", "--spp", "1", "--sampling", "uniform", "--preset", "paper")
         self.assert_refused(["compare", "a/p.####.png", "b/p.####.png"], ["was shown through", "--anyway"])
         self.run_ok("compare", "a/p.####.png", "b/p.####.png", "--anyway", "--metrics", "flip")
 
     def test_maps_with_gaze_and_regions(self):
-        self.render("a", "--spp", "4", "--falloff", "uniform", "--seed", "1")
-        self.render("b", "--spp", "1", "--falloff", "uniform", "--seed", "2")
+        self.render("a", "--spp", "4", "--sampling", "uniform", "--seed", "1")
+        self.render("b", "--spp", "1", "--sampling", "uniform", "--seed", "2")
         pair = ["compare", "a/p.####.exr", "b/p.####.exr", "--metrics", "flip,fovvideovdp"]
         self.run_ok(*pair, "--maps", "plain")
         self.run_ok(*pair, "--maps", "drawn", "--map-overlay")
@@ -249,8 +249,8 @@ class Compare(harness.CliTest):
         self.assertEqual([values["dim"][name] for name in ("flip", "mse", "fovvideovdp")], [0, 0, 10])
 
     def test_exposures_must_agree(self):
-        self.render("a", "--exposure", "0", "--spp", "1", "--falloff", "uniform")
-        self.render("b", "--exposure", "1", "--spp", "1", "--falloff", "uniform")
+        self.render("a", "--exposure", "0", "--spp", "1", "--sampling", "uniform")
+        self.render("b", "--exposure", "1", "--spp", "1", "--sampling", "uniform")
         self.assert_refused(["compare", "a/p.####.png", "b/p.####.png"], ["stops", "--anyway"])
         self.assert_refused(["compare", "a/p.####.exr", "b/p.####.exr"], ["stops"])
         scores, _ = self.compare("a/p.####.exr", "b/p.####.exr", "--anyway", "--metrics", "flip")

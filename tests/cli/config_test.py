@@ -33,8 +33,7 @@ class RoundTrip(harness.CliTest):
             "scene.gltf", "--env", "constant:1,2,3", "--env-ev", "-1.25", "--eye", "-9,2,0", "--target", "1e-7,3.5,0",
             "--gaze-at", "-0.1,1.5", "--gaze-max-age", "1500us", "--gaze-offset", "-3ns", "--gaze-start", "12345678901234567ns",
             "--screen-px", "3840,2160", "--screen-cm", "70.848,39.852", "--size", "640x360", "--fps", "24000/1001",
-            "--frames", "1-100x2,301", "--region-samples", "4,2,1", "--region-angles", "5.2,17", "--angle-reading",
-            "eccentricity", "--exposure", "auto-0.5", "--seed", "18446744073709551615", "--overwrite", "--aov", "albedo,depth",
+            "--frames", "1-100x2,301", "--region-samples", "4,2,1", "--region-eccentricities", "2.6,8.5", "--exposure", "auto-0.5", "--seed", "18446744073709551615", "--overwrite", "--aov", "albedo,depth",
             "--gaze-valid-values", "1,yes", "--frame-rect", "0,0,64,36", "--only-pixel", "3,4", "--russian-roulette",
             "--clamp-indirect", "2.5")
         for line in ['eye = [-9, 2, 0]', 'gaze-max-age = "1500us"', 'gaze-start = "12345678901234567ns"',
@@ -62,7 +61,7 @@ class RoundTrip(harness.CliTest):
         self.write("job.toml", 'bounces = 5\npreset = "paper"\n')
         text = self.print_config("--config", "job.toml")
         self.assertIn("\nbounces = 5\n", text)
-        self.assertIn('\nregion-shape = "disc"\n', text)
+        self.assertIn('\nsampling = "regions:shape=disc"\n', text)
 
     def test_what_was_replaced_is_told_and_recorded(self):
         self.write("job.toml", 'scene = "box.gltf"\n\nbounces = 5\n')

@@ -14,13 +14,13 @@ SCREEN = ["--screen-px", "3840,2160", "--screen-cm", "70.848,39.852", "--screen-
 CENTER, CORNER = "0.5,0.5", "0,0"
 # (shape, reading, gaze): pixels of the three regions, ratios for 32/16/8, 32/8/4, 32/2/1 samples a block (None: not stated)
 EXPECTED = {
-    ("disc", "full-angle", CENTER): ((68488, 673600, 7552312), (30.64, 48.91, 88.46)),
-    ("disc", "eccentricity", CENTER): ((273988, 2694376, 5326036), (11.95, 17.14, 25.40)),
-    ("disc", "full-angle", CORNER): ((17122, 168400, 8108878), (50.31, 91.15, 233.05)),
-    ("disc", "eccentricity", CORNER): ((68497, 673594, 7552309), (30.64, 48.91, 88.45)),
-    ("cone", "eccentricity", CENTER): ((275180, 2830344, 5188876), (11.68, 16.84, 25.17)),
-    ("cone", "eccentricity", CORNER): ((120721, 973251, 7200428), (23.37, 34.88, 55.30)),
-    ("cone", "full-angle", CORNER): ((31606, 274269, 7988525), (43.49, 74.62, 161.07)),
+    ("regions:shape=disc", "2.6,8.5", CENTER): ((68488, 673600, 7552312), (30.64, 48.91, 88.46)),
+    ("regions:shape=disc-by-radius", "5.2,17", CENTER): ((273988, 2694376, 5326036), (11.95, 17.14, 25.40)),
+    ("regions:shape=disc", "2.6,8.5", CORNER): ((17122, 168400, 8108878), (50.31, 91.15, 233.05)),
+    ("regions:shape=disc-by-radius", "5.2,17", CORNER): ((68497, 673594, 7552309), (30.64, 48.91, 88.45)),
+    ("regions", "5.2,17", CENTER): ((275180, 2830344, 5188876), (11.68, 16.84, 25.17)),
+    ("regions", "5.2,17", CORNER): ((120721, 973251, 7200428), (23.37, 34.88, 55.30)),
+    ("regions", "2.6,8.5", CORNER): ((31606, 274269, 7988525), (43.49, 74.62, 161.07)),
 }
 TAUS = ("32,16,8", "32,8,4", "32,2,1")
 
@@ -30,10 +30,10 @@ class Counts(harness.CliTest):
         return json.loads(self.run_ok("plan", "--counts", "--json", *SCREEN, *arguments).stdout)
 
     def test_regions_and_nominal_ratios(self):
-        for (shape, reading, gaze), (pixels, ratios) in EXPECTED.items():
+        for (sampling, ends, gaze), (pixels, ratios) in EXPECTED.items():
             for taus, ratio in zip(TAUS, ratios):
-                with self.subTest(shape=shape, reading=reading, gaze=gaze, taus=taus):
-                    frame = self.counts("--region-shape", shape, "--angle-reading", reading, "--gaze-at", gaze,
+                with self.subTest(sampling=sampling, ends=ends, gaze=gaze, taus=taus):
+                    frame = self.counts("--sampling", sampling, "--region-eccentricities", ends, "--gaze-at", gaze,
                                         "--region-samples", taus)[0]
                     self.assertEqual([region["pixels"] for region in frame["regions"]], list(pixels))
                     self.assertEqual(f"{frame['nominal_ratio']:.2f}", f"{ratio:.2f}")
@@ -63,16 +63,16 @@ class Counts(harness.CliTest):
 
     def test_samples_per_pixel(self):
         for taus, ratio in zip(TAUS, (3.62, 7.02, 23.93)):
-            frame = self.counts("--region-shape", "disc", "--gaze-at", CENTER, "--sample-unit", "pixel",
+            frame = self.counts("--sampling", "regions:shape=disc,unit=pixel", "--gaze-at", CENTER,
                                 "--region-samples", taus)[0]
             self.assertEqual(f"{frame['nominal_ratio']:.2f}", f"{ratio:.2f}")
 
     def test_uniform(self):
-        frame = self.counts("--gaze-at", CENTER, "--falloff", "uniform", "--spp", "4")[0]
+        frame = self.counts("--gaze-at", CENTER, "--sampling", "uniform", "--spp", "4")[0]
         self.assertEqual((frame["traced_samples"], frame["nominal_ratio"]), (3840 * 2160 * 4, 1.0))
 
     def test_table(self):
-        text = self.run_ok("plan", "--counts", *SCREEN, "--gaze-at", CENTER, "--region-shape", "disc").stdout
+        text = self.run_ok("plan", "--counts", *SCREEN, "--gaze-at", CENTER, "--sampling", "regions:shape=disc").stdout
         for word in ("68488", "673600", "7552312", "30.64", "nominal", "traced"):
             self.assertIn(word, text)
 

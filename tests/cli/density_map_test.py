@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the samples go by a picture from outside: --falloff map --density-map FILE."""
+"""Where the samples go by a picture from outside: --density FILE.exr."""
 
 import csv
 import json
@@ -35,36 +35,36 @@ class DensityMap(harness.CliTest):
         (self.folder / name).write_bytes(exr(len(values), 1, [values]))
 
     def render(self, out, *more):
-        self.run_ok("render", "box.gltf", *VIEW, "--falloff", "map", *more, "-o", f"{out}/f.####.exr")
+        self.run_ok("render", "box.gltf", *VIEW, *more, "-o", f"{out}/f.####.exr")
         with open(self.folder / out / "f.timing.csv", newline="") as file:
             return [int(row["samples"]) for row in csv.DictReader(file)]
 
     def test_rates_of_one_picture_and_of_a_budget(self):
         self.write_map("even.exr", 3)
-        self.assertEqual(self.render("even", "--density-map", "even.exr"), [3 * 64 * 36])
+        self.assertEqual(self.render("even", "--density", "even.exr"), [3 * 64 * 36])
         self.write_map("uneven.exr", 8, 8, 1, 1)
-        free, = self.render("free", "--density-map", "uneven.exr")
+        free, = self.render("free", "--density", "uneven.exr")
         self.assertAlmostEqual(free, 4.5 * 64 * 36, delta=0.01 * free)
-        bound, = self.render("bound", "--density-map", "uneven.exr", "--budget-spp", "1.25")
+        bound, = self.render("bound", "--density", "uneven.exr", "--spp", "1.25")
         self.assertAlmostEqual(bound, 1.25 * 64 * 36, delta=1.1)
 
     def test_counts_need_no_rendering_and_the_map_of_one_run_serves_another(self):
-        self.run_ok("render", "box.gltf", *VIEW, *harness.SCREEN, "--gaze-at", "0.4,0.5", "--falloff", "acuity", "--spp",
+        self.run_ok("render", "box.gltf", *VIEW, *harness.SCREEN, "--gaze-at", "0.4,0.5", "--density", "acuity", "--spp",
                     "6", "-o", "a/f.exr", "--map", "a/map.exr")
         with open(self.folder / "a" / "f.timing.csv", newline="") as file:
             samples = int(next(csv.DictReader(file))["samples"])
-        counts = json.loads(self.run_ok("plan", "--counts", "--json", "--size", "64x36", "--falloff", "map", "--density-map",
-                                        "a/map.exr", "--density-floor", "1e-6").stdout)[0]
+        counts = json.loads(self.run_ok("plan", "--counts", "--json", "--size", "64x36", "--density",
+                                        "a/map.exr").stdout)[0]
         self.assertAlmostEqual(counts["traced_samples"], samples, delta=1.1)
 
     def test_a_sequence_of_maps(self):
         for frame in (1, 2, 3):
             self.write_map(f"d.{frame:04}.exr", frame)
-        common = ["--density-map", "d.####.exr", "--frames", "1-3"]
+        common = ["--density", "d.####.exr", "--frames", "1-3"]
         self.assertEqual(self.render("all", *common), [64 * 36 * frame for frame in (1, 2, 3)])
         # Parts have the digest of the whole, and the same pictures.
         for part in ("1", "2-3"):
-            self.run_ok("render", "box.gltf", *VIEW, "--falloff", "map", "--density-map", "d.####.exr", "--frames", part, "--chunk", "1/1",
+            self.run_ok("render", "box.gltf", *VIEW, "--density", "d.####.exr", "--frames", part, "--chunk", "1/1",
                         "-o", "parts/f.####.exr")
         self.run_ok("merge", "parts")
         self.assertEqual(self.pictures("all"), self.pictures("parts"))
@@ -75,10 +75,10 @@ class DensityMap(harness.CliTest):
         self.render("all", *common, "--resume")
         self.assertEqual((self.folder / "all/f.0002.exr").read_bytes(), before)
         self.write_map("d.0002.exr", 5)
-        again = ["render", "box.gltf", *VIEW, "--falloff", "map", *common, "--resume", "-o", "all/f.####.exr"]
+        again = ["render", "box.gltf", *VIEW, *common, "--resume", "-o", "all/f.####.exr"]
         self.assert_refused(again, ["3 finished frames, 1-3", "d.0002.exr has changed"])
         self.assertEqual(self.render("all", *common, "--resume", "--overwrite"), [64 * 36 * frame for frame in (1, 5, 3)])
-        self.assert_refused(["render", "box.gltf", *VIEW, "--falloff", "map", "--density-map", "d.####.exr", "--frames", "4", "-o",
+        self.assert_refused(["render", "box.gltf", *VIEW, "--density", "d.####.exr", "--frames", "4", "-o",
                              "x.exr"], ["d.0004.exr"])
 
     def test_what_is_refused(self):
@@ -86,15 +86,15 @@ class DensityMap(harness.CliTest):
         self.write_map("nan.exr", 1, float("nan"))
         self.write_map("good.exr", 1)
         for words, *arguments in [
-            (["bad.exr: pixel 2,0 has the value -2"], "--density-map", "bad.exr"),
-            (["nan.exr: pixel 1,0 has the value nan"], "--density-map", "nan.exr"),
-            (["missing.exr"], "--density-map", "missing.exr"),
-            (["--density-map", "no picture"],),
+            (["bad.exr: pixel 2,0 has the value -2"], "--density", "bad.exr"),
+            (["nan.exr: pixel 1,0 has the value nan"], "--density", "nan.exr"),
+            (["missing.exr"], "--density", "missing.exr"),
+            (["no-such-density.png", "a file: .csv for a curve, .exr for a picture"], "--density", "no-such-density.png"),
         ]:
             with self.subTest(arguments=arguments):
-                self.assert_refused(["render", "box.gltf", *VIEW, "--falloff", "map", *arguments, "-o", "x/x.exr"], words)
-        idle = self.run_ok("render", "box.gltf", *VIEW, "--density-map", "good.exr", "-o", "idle/f.exr").stderr
-        self.assertIn("--density-map does nothing", idle)
+                self.assert_refused(["render", "box.gltf", *VIEW, *arguments, "-o", "x/x.exr"], words)
+        idle = self.run_ok("render", "box.gltf", *VIEW, "--density", "good.exr", "--sampling", "uniform", "-o", "idle/f.exr").stderr
+        self.assertIn("--density does nothing with --sampling uniform", idle)
 
 
 if __name__ == "__main__":

@@ -49,8 +49,8 @@ class TracedFirst(Farm):
     def test_other_histories_and_samples_that_follow_the_picture(self):
         for self.history in (["--accumulate", "running", "--filter", "linear", "--aov", "albedo,depth"],
                              ["--accumulate", "reproject", "--accumulate-order", "before", "--filter", "linear"],
-                             [*HISTORY, "--falloff", "linear"],
-                             [*HISTORY, "--falloff", "visible", "--budget-spp", "8"]):
+                             [*HISTORY, "--density", "linear"],
+                             [*HISTORY, "--sampling", "adaptive", "--spp", "8"]):
             with self.subTest(self.history):
                 for folder in ("whole", "out"):
                     shutil.rmtree(self.folder / folder, ignore_errors=True)

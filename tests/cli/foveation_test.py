@@ -28,12 +28,12 @@ class Foveation(harness.CliTest):
 
     def test_every_model_meets_its_budget_and_renders(self):
         self.write("table.csv", TABLE)
-        models = [member["name"] for member in self.names("falloffs") if member["name"] not in ("map", "visible")]
+        models = [member["name"] for member in self.names("densities")] + ["table.csv"]
         self.assertIn("geisler-perry", models)
         self.write("box.gltf", json.dumps(harness.box_gltf()))
         for model in models:
             with self.subTest(model=model):
-                arguments = ["--falloff", model, "--budget-spp", "1.5", "--falloff-table", "table.csv"]
+                arguments = ["--density", model, "--spp", "1.5"]
                 traced = self.counts(*arguments)["traced_samples"]
                 self.assertAlmostEqual(traced, 1.5 * 64 * 36, delta=1.1)
                 self.run_ok("render", "box.gltf", *GAZE, *arguments, "-o", f"{model}/f.exr", "--map", f"{model}/map.exr",
@@ -47,14 +47,14 @@ class Foveation(harness.CliTest):
 
     def test_slopes_and_saccades(self):
         fine = [*harness.SCREEN, "--size", "640x360", "--gaze-at", "0.4,0.5"]
-        steep = self.counts(*fine, "--falloff", "mar", at=[])["traced_samples"]
-        flat = self.counts(*fine, "--falloff", "mar", "--falloff-mar-slope", "0.01", at=[])["traced_samples"]
+        steep = self.counts(*fine, "--density", "mar", at=[])["traced_samples"]
+        flat = self.counts(*fine, "--density", "mar:slope=0.01", at=[])["traced_samples"]
         self.assertGreater(flat, 1.2 * steep)
         self.write("gaze.csv", harness.gaze_csv(
             # Half a second still, then 20 ms of 400 deg/s, then still again.
             f"{i * 2_000_000},{0.3 + 0.4 * min(max((i - 250) / 10, 0), 1):.4f},0.5,ok,cyclopean" for i in range(500)))
         plan = json.loads(self.run_ok("plan", "--gaze", "gaze.csv", *harness.SCREEN, "--size", "64x36", "--fps", "250",
-                                      "--falloff", "acuity", "--eye", "0,0,3", "--target", "0,0,0", "--json").stdout)
+                                      "--density", "acuity", "--eye", "0,0,3", "--target", "0,0,0", "--json").stdout)
         self.assertTrue(any(frame["eye_in_saccade"] for frame in plan["frames"]))
         self.assertFalse(plan["frames"][50]["eye_in_saccade"])
 
@@ -64,20 +64,19 @@ class Foveation(harness.CliTest):
         self.write("empty.csv", "ecc_deg,density\n")
         self.write("head.csv", "0,1\n")
         for words, *arguments in [
-            ("bad.csv:4: eccentricity 5 does not come after 10", "--falloff", "table", "--falloff-table", "bad.csv"),
-            ("over.csv:2", "--falloff", "table", "--falloff-table", "over.csv"),
-            ("no points", "--falloff", "table", "--falloff-table", "empty.csv"),
-            ("ecc_deg,density", "--falloff", "table", "--falloff-table", "head.csv"),
-            ("--falloff-table", "--falloff", "table"),
-            ("two budgets", "--budget-spp", "1", "--budget-samples", "5"),
-            ("--budget-spp", "--budget-spp", "0"),
+            ("bad.csv:4: eccentricity 5 does not come after 10", "--density", "bad.csv"),
+            ("over.csv:2", "--density", "over.csv"),
+            ("no points", "--density", "empty.csv"),
+            ("ecc_deg,density", "--density", "head.csv"),
+            ("this option is gone; give --spp", "--budget-samples", "5"),
+            ("--spp", "--spp", "0"),
             ("--max-block", "--max-block", "12"),
-            ("--density-floor", "--density-floor", "0"),
-            ("--falloff-contrast", "--falloff", "geisler-perry", "--falloff-contrast", "0.01"),
-            ("--falloff-ramp", "--falloff-ramp", "9,5,0.1"),
-            ("did you mean 'geisler-perry'", "--falloff", "geisler-pery"),
-            ("normalise to the display", "--falloff", "mar", "--falloff-mar-foveal", "0", "--falloff-normalisation",
-             "relative"),
+            ("contrast", "--density", "geisler-perry:contrast=0.01"),
+            ("inner=5 is not less than outer=5", "--density", "linear:outer=5"),
+            ("give it with its --density", "--falloff-ramp", "5,5,0.1"),
+            ("did you mean 'adaptive'", "--sampling", "adaptiv"),
+            ("did you mean 'geisler-perry'", "--density", "geisler-pery"),
+            ("relative-to=display", "--density", "mar:foveal=0,relative-to=fovea"),
             ("did you mean 'paper'", "--preset", "papr"),
         ]:
             with self.subTest(arguments=arguments):
@@ -89,13 +88,13 @@ class Foveation(harness.CliTest):
     def test_the_filter_by_itself_suits_the_frame(self):
         self.write("box.gltf", json.dumps(harness.box_gltf()))
         for i, (expected, *more) in enumerate([
-                ("guided",), ("guided", "--falloff", "uniform", "--spp", "1"), ("guided", "--shutter", "0.5"),
-                ("linear", "--falloff", "uniform", "--spp", "1", "--accumulate", "running"),
+                ("guided",), ("guided", "--sampling", "uniform", "--spp", "1"), ("guided", "--shutter", "0.5"),
+                ("linear", "--sampling", "uniform", "--spp", "1", "--accumulate", "running"),
                 ("none", "--filter", "none")]):
             self.run_ok("render", "box.gltf", *GAZE, *more, "-o", f"{i}/f.exr", "--quiet")
             record = json.loads(next((self.folder / str(i)).glob("*run*.json")).read_text())
             self.assertEqual(config(record["config_toml"])["filter"], expected, more)
-        # Without gaze all frames are uniform, whatever the fall-off.
+        # Without gaze all frames are uniform, whatever the sampling.
         self.run_ok("render", "box.gltf", "--size", "64x36", "--spp", "2", "-o", "eyeless/f.exr", "--quiet")
         record = json.loads((self.folder / "eyeless/f.run.json").read_text())
         self.assertEqual(config(record["config_toml"])["filter"], "guided")
@@ -121,13 +120,13 @@ class Foveation(harness.CliTest):
     def test_presets_lie_below_the_options_of_their_own_place(self):
         self.assertEqual(config(self.print_config("--preset", "paper", "--bounces", "7"))["bounces"], "7")
         self.assertEqual(config(self.print_config("--bounces", "7", "--preset", "paper"))["bounces"], "7")
-        self.write("job.toml", "bounces = 5\nangle-reading = \"eccentricity\"\n")
+        self.write("job.toml", "bounces = 5\nregion-eccentricities = [1, 2]\n")
         both = config(self.print_config("--config", "job.toml", "--preset", "paper"))
         # A preset on the command line stands above the file.
-        self.assertEqual((both["bounces"], both["angle-reading"], both["region-shape"]), ("3", "full-angle", "disc"))
+        self.assertEqual((both["bounces"], both["region-eccentricities"], both["sampling"]), ("3", "[2.6, 8.5]", "regions:shape=disc"))
         self.write("job.toml", "bounces = 5\npreset = \"paper\"\nview = \"raw\"\n")
         within = config(self.print_config("--config", "job.toml"))
-        self.assertEqual((within["bounces"], within["view"], within["region-shape"]), ("5", "raw", "disc"))
+        self.assertEqual((within["bounces"], within["view"], within["sampling"]), ("5", "raw", "regions:shape=disc"))
         text = self.print_config("--preset", "paper", "--spp", "3")
         self.write("again.toml", text)
         self.assertEqual(self.print_config("--config", "again.toml"), text)

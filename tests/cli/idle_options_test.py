@@ -39,12 +39,10 @@ class IdleOptions(harness.CliTest):
             (["--accumulate-reset-blinks"], reproject),
             (["--block-samples", "4"], []),
             (["--max-block", "4"], []),
-            (["--density-floor", "0.1"], []),
-            (["--density-floor", "0.1"], ["--falloff", "uniform"]),
-            (["--region-samples", "4,4,4"], ["--falloff", "mar"]),
+            (["--max-block", "4"], ["--sampling", "uniform"]),
+            (["--density", "mar"], ["--sampling", "uniform"]),
+            (["--region-samples", "4,4,4"], ["--density", "mar"]),
             (["--gaze-latency", "20ms"], []),
-            (["--falloff-mar-slope", "0.025"], []),
-            (["--falloff-eye", "left"], ["--falloff", "mar"]),
             (["--exposure-key", "0.3"], []),
             (["--exposure-smoothing", "1s"], ["--exposure", "1"]),
         ):
@@ -57,32 +55,31 @@ class IdleOptions(harness.CliTest):
         for options in (
             [],
             ["--accumulate", "reproject", "--accumulate-blend", "0.2", "--accumulate-order", "before"],
-            ["--falloff", "mar", "--block-samples", "4", "--max-block", "4", "--density-floor", "0.1"],
+            ["--density", "mar", "--block-samples", "4", "--max-block", "4"],
             ["--region-samples", "4,4,4"],
-            ["--falloff", "csf", "--falloff-eye", "left", "--falloff-luminance", "20", "--falloff-normalisation", "relative"],
+            ["--density", "csf:eye=left,luminance=20"],
             ["--exposure", "auto", "--exposure-key", "0.3", "--exposure-smoothing", "1s"],
-            ["--preset", "paper", "--falloff", "mar"],  # a preset's settings are not the user's
+            ["--preset", "paper", "--density", "mar"],  # a preset's settings are not the user's
         ):
             with self.subTest(options=options):
                 self.assertEqual(self.warnings(*AT, *options), [])
         # What --print-config wrote holds every option, and says nothing new.
-        self.write("all.toml", self.run_ok("render", *AT, "--falloff", "mar", "--max-block", "4", "--print-config").stdout)
+        self.write("all.toml", self.run_ok("render", *AT, "--density", "mar", "--max-block", "4", "--print-config").stdout)
         self.assertEqual(self.warnings("--config", "all.toml"), [])
 
     def test_without_gaze_all_frames_are_uniform(self):
         eyeless = [*harness.SCREEN, "--size", "64x36"]
         for options in (
-            ["--falloff", "mar"], ["--region-samples", "4,4,4"], ["--region-blocks", "4,8"], ["--region-angles", "6,20"],
-            ["--angle-reading", "eccentricity"], ["--sample-unit", "pixel"], ["--region-shape", "disc"],
-            ["--block-samples", "4"], ["--max-block", "4"], ["--density-floor", "0.1"],
+            ["--density", "mar"], ["--region-samples", "4,4,4"], ["--region-blocks", "4,8"], ["--region-eccentricities", "3,10"],
+            ["--block-samples", "4"], ["--max-block", "4"],
         ):
             with self.subTest(options=options):
                 self.assertEqual(self.warnings(*eyeless, *options), [f"{options[0]} does nothing without gaze"])
                 self.assertEqual(self.counts(*eyeless, *options), self.counts(*eyeless))
-        both = self.run_ok("plan", *eyeless, "--eye", "0,0,3", "--target", "0,0,0", "--falloff", "linear", "--max-block", "4").stderr
+        both = self.run_ok("plan", *eyeless, "--eye", "0,0,3", "--target", "0,0,0", "--density", "linear", "--max-block", "4").stderr
         self.assertEqual(both.count("does nothing without gaze"), 2)
         # Uniform is what was asked for, and budgets are met everywhere.
-        for options in ([], ["--falloff", "uniform"], ["--spp", "3"], ["--budget-spp", "3"], ["--preset", "paper"]):
+        for options in ([], ["--sampling", "uniform"], ["--spp", "3"], ["--preset", "paper"]):
             with self.subTest(options=options):
                 self.assertEqual(self.warnings(*eyeless, *options), [])
 
@@ -90,7 +87,7 @@ class IdleOptions(harness.CliTest):
         def samples(*options):
             return json.loads(self.run_ok("plan", "--counts", "--json", *AT, *options).stdout)[0]["traced_samples"]
 
-        self.assertEqual(samples(), samples("--block-samples", "2", "--max-block", "2", "--density-floor", "0.5"))
+        self.assertEqual(samples(), samples("--block-samples", "2", "--max-block", "2"))
 
     def test_a_lost_pixel_filter_is_said(self):
         self.write("glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1)))
@@ -109,7 +106,7 @@ class IdleOptions(harness.CliTest):
         self.assertEqual(said("box.gltf", "--filter", "guided", "--shutter", "180deg"), "")  # nothing moves
 
     def test_unknown_names(self):
-        for option, text in (("--filter", "unknown filter 'x'; Known: none, linear"), ("--falloff", "unknown falloff 'x'; Known: regions"),
+        for option, text in (("--filter", "unknown filter 'x'; Known: none, linear"), ("--sampling", "unknown sampling 'x'; Known: regions"), ("--density", "unknown density 'x'; Known: acuity"),
                              ("--preset", "unknown preset 'x'; Known: paper")):
             self.assert_refused(["plan", "--counts", *AT, option, "x"], [text])
         self.write("x.toml", "qqqqqqqqqqqqqqqq = 1\n")

@@ -37,8 +37,8 @@ class LearnedLight(harness.CliTest):
             return list(csv.DictReader(file))
 
     def test_the_same_bits_however_it_is_rendered(self):
-        for name, settings in (("foveated", GAZE), ("visible", [*GAZE, "--falloff", "visible", "--budget-spp", "2"]),
-                               ("around", ["--falloff", "uniform", "--spp", "1", "--accumulate", "two-sided", "--accumulate-window", "1"])):
+        for name, settings in (("foveated", GAZE), ("visible", [*GAZE, "--sampling", "adaptive", "--spp", "2"]),
+                               ("around", ["--sampling", "uniform", "--spp", "1", "--accumulate", "two-sided", "--accumulate-window", "1"])):
             with self.subTest(settings=name):
                 whole = self.render(f"{name}", *settings, "--threads", "1")
                 self.assertEqual(len(whole), 3)
@@ -50,7 +50,7 @@ class LearnedLight(harness.CliTest):
                 self.assertEqual(self.render(name, *settings, "--resume"), whole)
 
     def test_it_changes_pictures_and_is_counted(self):
-        raw = ["--falloff", "uniform", "--spp", "2", "--filter", "none"]
+        raw = ["--sampling", "uniform", "--spp", "2", "--filter", "none"]
         learned = self.render("learned", *raw)
         plain = self.render("plain", *raw, learning=("--no-learn-light",))
         self.assertTrue(all(learned[key] != plain[key] for key in plain))

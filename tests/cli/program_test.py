@@ -54,10 +54,10 @@ class Talk(harness.CliTest):
         complete = lambda *words: self.complete("completion.bash", "gazetrace", *words)
         self.assertEqual(complete("ren"), ["render"])
         self.assertIn("inspect", complete("gaze", ""))
-        offered = complete("render", "--fallo")
-        self.assertTrue({"--falloff", "--falloff-normalisation", "--falloff-table"} <= set(offered), offered)
-        self.assertTrue(all(word.startswith("--fallo") for word in offered), offered)
-        self.assertEqual(complete("render", "box.gltf", "--falloff", "geis"), ["geisler-perry"])
+        offered = complete("render", "--region")
+        self.assertTrue({"--region-samples", "--region-blocks", "--region-eccentricities"} <= set(offered), offered)
+        self.assertTrue(all(word.startswith("--region") for word in offered), offered)
+        self.assertEqual(complete("render", "box.gltf", "--density", "geis"), ["geisler-perry"])
         self.assertIn("h264", complete("video", "--codec", ""))
         self.assertEqual(complete("render", "bo"), ["box.gltf"])
         self.assertEqual(complete("gaze", "inspect", "--sv"), ["--svg"])
@@ -100,7 +100,7 @@ class Talk(harness.CliTest):
 
     def test_lists(self):
         families = json.loads(self.run_ok("list", "--json").stdout)
-        self.assertEqual({member["name"] for member in families["falloffs"]} >= {"regions", "uniform"}, True)
+        self.assertEqual({member["name"] for member in families["samplings"]} >= {"regions", "uniform"}, True)
         self.assertEqual({member["name"] for member in families["filters"]} >= {"none", "linear"}, True)
         self.assertEqual({member["name"] for member in families["screens"]} >= {"paper"}, True)
         self.assertIn("ACES SDR", self.run_ok("list", "views").stdout)
@@ -110,12 +110,10 @@ class Talk(harness.CliTest):
 
     def test_every_listed_name_is_accepted(self):
         families = json.loads(self.run_ok("list", "--json").stdout)
-        self.write("table.csv", "ecc_deg,density\n0,1\n30,0.1\n")
         base = ["render", "box.gltf", "--size", "16x9", "--spp", "1", "--quiet", "--overwrite", "-o", "f.exr", "-o", "f.png",
                 "--gaze-at", "0.5,0.5", *harness.SCREEN]
-        self.run_ok("render", "box.gltf", "--size", "4x4", "--spp", "1", "--quiet", "-o", "rates.exr")
-        needs = {"table": ["--falloff-table", "table.csv"], "map": ["--density-map", "rates.exr"], "visible": ["--budget-spp", "4"]}
-        for family, option in (("falloffs", "--falloff"), ("filters", "--filter"), ("views", "--view"), ("aovs", "--aov")):
+        needs = {"adaptive": ["--spp", "4"]}
+        for family, option in (("samplings", "--sampling"), ("densities", "--density"), ("filters", "--filter"), ("views", "--view"), ("aovs", "--aov")):
             for member in families[family]:
                 with self.subTest(option=option, name=member["name"]):
                     more = needs.get(member["name"], [])
@@ -222,12 +220,11 @@ class Talk(harness.CliTest):
         self.assert_refused([*job, "--progress", "json:77"], ["--progress", "77"])
 
     def test_a_name_of_both_families(self):
-        """linear is a fall-off and a filter; help and errors say which option takes what."""
-        self.assert_refused(["render", "box.gltf", "-o", "f.exr", "--filter", "quadric"], ["filter", "give --falloff"])
-        self.assert_refused(["render", "box.gltf", "-o", "f.exr", "--falloff", "guided"], ["falloff", "give --filter"])
+        """linear is a density and a filter; help and errors say which option takes what."""
+        self.assert_refused(["render", "box.gltf", "-o", "f.exr", "--filter", "quadric"], ["filter", "give --density"])
+        self.assert_refused(["render", "box.gltf", "-o", "f.exr", "--density", "guided"], ["density", "give one of these"])
         text = " ".join(self.run_ok("render", "--help-all").stdout.split())
-        self.assertIn("how pixels are filled from the samples is --filter, which has a 'linear', too", text)
-        self.assertIn("where the samples are is --falloff, which has a 'linear', too", text)
+        self.assertIn("where the samples are is --density, which has a 'linear', too", text)
 
     def test_each_aov_is_described(self):
         members = json.loads(self.run_ok("list", "aovs", "--json").stdout)["aovs"]
@@ -260,12 +257,12 @@ class Talk(harness.CliTest):
         self.assertEqual(list(told_ms), [column[:-3] for column in columns[1 : columns.index("total_ms") + 1]])
 
     def test_nothing_to_save_is_told(self):
-        gaze = ["--gaze-at", "0.5,0.5", "--screen-px", "1920,1080", "--screen-cm", "60,34", "--screen-distance-cm", "60", "--falloff",
+        gaze = ["--gaze-at", "0.5,0.5", "--screen-px", "1920,1080", "--screen-cm", "60,34", "--screen-distance-cm", "60", "--density",
                 "geisler-perry"]
         small = self.run_ok("plan", "box.gltf", *gaze, "--size", "160x90", "--frames", "1").stderr
-        self.assertIn("--falloff geisler-perry saves only 1.0", small)
-        self.assertIn("--falloff-normalisation", small)
-        self.assertIn("saves only", self.run_ok("render", "box.gltf", *gaze, "--size", "160x90", "-o", "f.exr", "--spp", "1").stderr)
+        self.assertIn("--density geisler-perry saves only 1.0", small)
+        self.assertIn("relative-to=fovea", small)
+        self.assertIn("saves only", self.run_ok("render", "box.gltf", *gaze, "--size", "160x90", "-o", "f.exr").stderr)
         self.assertNotIn("saves only", self.run_ok("plan", "box.gltf", *gaze, "--size", "1920x1080", "--frames", "1").stderr)
 
     def test_replaying_a_pixel(self):
@@ -348,7 +345,7 @@ class Streams(harness.CliTest):
     @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full")
     def test_a_full_disk_is_a_failure(self):
         with open("/dev/full", "w", encoding="utf-8") as full:
-            result = subprocess.run([harness.PROGRAM, "list", "falloffs"], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+            result = subprocess.run([harness.PROGRAM, "list", "densities"], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
         self.assertEqual(result.returncode, 3)
         self.assertEqual(len(result.stderr.splitlines()), 1)
 

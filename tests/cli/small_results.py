@@ -13,8 +13,8 @@ METRICS = {"flip": "lower", "mse": "lower", "psnr": "higher", "fovvideovdp": "hi
 BANDS_DEG = [0, 2.6, 5.2, 8.5, 17, 30, 60]
 RUNS = [  # id, role, of, label, options
     ("fov", "test", None, "foveated, 32/16/8", []),
-    ("uni", "uniform-reference-rate", None, "uniform, 32 spp", ["--falloff", "uniform", "--spp", "32"]),
-    ("few", "equal-samples", "fov", "uniform, 2 spp <equal samples>", ["--falloff", "uniform", "--spp", "2"]),
+    ("uni", "uniform-reference-rate", None, "uniform, 32 spp", ["--sampling", "uniform", "--spp", "32"]),
+    ("few", "equal-samples", "fov", "uniform, 2 spp <equal samples>", ["--sampling", "uniform", "--spp", "2"]),
 ]
 
 
@@ -34,7 +34,7 @@ def make(folder, size="64x36", frames=3):
     (folder / "gaze.csv").write_text(harness.moving_gaze())
     width, height = map(int, size.split("x"))
     common = ["render", "box.gltf", "--gaze", "gaze.csv", "--size", size, "--frames", f"1-{frames}", "--fps", "24", "--quiet", *harness.SCREEN]
-    run(folder, *common, "-o", "ref/p.####.exr", "-o", "ref/p.####.png", "--falloff", "uniform", "--spp", "64", "--seed", "9")
+    run(folder, *common, "-o", "ref/p.####.exr", "-o", "ref/p.####.png", "--sampling", "uniform", "--spp", "64", "--seed", "9")
     rows = []
     for name, role, of, label, options in RUNS:
         run(folder, *common, "-o", f"{name}/p.####.exr", "-o", f"{name}/p.####.png", "--seed", "1", *options)
@@ -65,7 +65,7 @@ def make(folder, size="64x36", frames=3):
     rows[0]["baselines"] = {"uniform-reference-rate": "uni", "equal-samples": "few"}
     results = {
         "format": "gazetrace-sweep-1", "title": "Box & <glide>", "plan_file": "box.toml", "build": {"version": "0.1.0"}, "machine": {"threads": 2},
-        "viewing": {"size_px": [width, height]}, "color": {"view": "ACES SDR"}, "common_settings": {"bounces": 3, "filter": "linear"}, "varied": ["falloff"],
+        "viewing": {"size_px": [width, height]}, "color": {"view": "ACES SDR"}, "common_settings": {"bounces": 3, "filter": "linear"}, "varied": ["sampling"],
         "bands_deg": BANDS_DEG, "band_pixel_share": {"glide": [0.01, 0.03, 0.05, 0.2, 0.4, 0.31, 0]},
         "metrics": [{"name": name, "unit": "", "better": better, "note": ""} for name, better in METRICS.items()],
         "scenes": [{"name": "box", "reference": {"spp": 64, "seeds": [9], "scramblings": 1, "png": "ref/p.####.png",

@@ -46,7 +46,7 @@ class SweepRows(harness.CliTest):
 
     def test_columns_of_the_csv_are_those_of_the_json(self):
         self.plan('[[setting]]\nregion-samples = [8, 2, 1]\nfilter = "none"\n'
-                  '[[setting]]\nfalloff = "mar"\nfilter = "linear"\nfalloff-mar-slope = 0.025\nblock-samples = 2\nmax-block = 4\n',
+                  '[[setting]]\ndensity = "mar:slope=0.025"\nfilter = "linear"\nblock-samples = 2\nmax-block = 4\n',
                   'metrics = ["mse"]\nreference-rate = 8\n')
         self.sweep("--quiet")
         results = self.results()
@@ -72,8 +72,8 @@ class SweepRows(harness.CliTest):
             self.assertAlmostEqual(float(line["score"]), score, delta=1e-7 * score)
             # Of the rows that see no gaze there is nothing to tell but rate and filter.
             if row["role"] != "test":
-                self.assertLessEqual(set(row["settings"]), {"filter", "falloff", "spp", "budget-spp"})
-                self.assertEqual(row["settings"]["falloff"], "uniform")
+                self.assertLessEqual(set(row["settings"]), {"filter", "sampling", "spp"})
+                self.assertEqual(row["settings"]["sampling"], "uniform")
 
     def test_end_to_end_ratios_are_of_times_with_output(self):
         self.plan(measure='metrics = ["mse"]\nreference-rate = 8\nbaselines = ["uniform-reference-rate"]\n')

@@ -104,7 +104,7 @@ class Sweep(harness.CliTest):
         self.assertEqual({row["spp_mean"] for row in rows.values() if row["role"] == "uniform-rate"}, {1, 4})
         # What a uniform row is listed with is its own: nothing of the test's regions.
         same = next(row for row in rows.values() if row["role"] == "equal-samples")
-        self.assertEqual(same["settings"]["falloff"], "uniform")
+        self.assertEqual(same["settings"]["sampling"], "uniform")
         self.assertFalse([key for key in same["settings"] if key.startswith("region-")])
         # The fixed gaze is 0.3 of the screen off the middle: mirrored and centred are wrong, shuffled is the same.
         self.assertEqual({row["wrong"] for row in rows.values() if row["gaze"] == "left" and row["wrong"]},

@@ -55,7 +55,7 @@ class TwoSided(harness.CliTest):
 
     def test_groups_at_rest_are_the_same_in_every_run(self):
         self.write("still.gltf", json.dumps(harness.box_gltf()))
-        rest = ["still.gltf", "--falloff", "uniform", "--spp", "2", "--filter", "guided", "--accumulate-hold", "2"]
+        rest = ["still.gltf", "--sampling", "uniform", "--spp", "2", "--filter", "guided", "--accumulate-hold", "2"]
         whole = self.render("whole", *rest, "--frames", "1-6")
         names = sorted(whole)
         self.assertEqual([whole[a] == whole[b] for a, b in zip(names, names[1:])], [True, False, True, False, True])

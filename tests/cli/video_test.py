@@ -85,7 +85,7 @@ class Video(harness.CliTest):
     @NEEDS_FFMPEG
     def test_a_run_gives_rate_colors_gaze_and_a_warning_to_viewers(self):
         self.render("fov")
-        self.render("uni", "--falloff", "uniform", "--spp", "2")
+        self.render("uni", "--sampling", "uniform", "--spp", "2")
         result = self.run_ok("video", "fov/p.####.exr", "-o", "plain.mkv", "--codec", "ffv1")
         self.assertIn("viewers look elsewhere", result.stdout)
         stream, container = self.probe("plain.mkv")

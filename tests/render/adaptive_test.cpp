@@ -43,10 +43,10 @@ FrameRequest request_of(std::int32_t frame = 1) {
   return frame_request(frame, camera_at({1.5, 2.0, 5}, {0, 0.8, 0}), kWidth, kHeight);
 }
 
-FrameSettings settings_of(const std::string& falloff, const std::string& filter = "none") {
+FrameSettings settings_of(const std::string& sampling, const std::string& filter = "none") {
   FrameSettings settings;
-  settings.foveation.falloff = falloff;
-  settings.foveation.uniform_spp = 16;
+  settings.foveation.sampling = parse_sampling(sampling);
+  settings.foveation.spp = 16;
   settings.reconstruction.filter = filter;
   settings.threads = 2;
   return settings;
@@ -72,7 +72,7 @@ TEST(Adaptive, TheMeanOverSeedsIsThatOfUniformFrames) {
   std::array<std::vector<std::vector<double>>, 2> seen;  // uniform, adaptive; seed; pixel
   for (std::size_t arm = 0; arm < seen.size(); ++arm) {
     for (int seed = 0; seed < kSeeds; ++seed) {
-      FrameSettings settings = settings_of(arm == 0 ? "uniform" : "visible");
+      FrameSettings settings = settings_of(arm == 0 ? "uniform" : "adaptive");
       settings.foveation.min_spp = 1;
       settings.trace.seed = static_cast<std::uint64_t>(seed) + 1000 * arm;
       TemporalHistory none;
@@ -113,7 +113,7 @@ TEST(Adaptive, SameBitsForAnyNumberOfThreads) {
     std::vector<RenderedFrame> frames;
     for (const int count : {1, 3}) {
       PathTracer tracer(scene, threads(count));
-      FrameSettings settings = settings_of("visible", filter);
+      FrameSettings settings = settings_of("adaptive", filter);
       settings.foveation.target.relmse = 0.02;
       settings.threads = count;
       TemporalHistory none;
@@ -130,7 +130,7 @@ TEST(Adaptive, SameBitsForAnyNumberOfThreads) {
 TEST(Adaptive, TheFrameIsThatOfItsRatesWithNothingOfThePilot) {
   const Scene scene = room();
   PathTracer tracer(scene, threads(2));
-  const FrameSettings settings = settings_of("visible");
+  const FrameSettings settings = settings_of("adaptive");
   const TracedFrame traced = FrameRenderer(tracer, settings).trace(request_of());
   TraceSettings trace = settings.trace;
   trace.learned = tracer.at({0, 0}).learn_light(request_of().camera, kWidth, kHeight, trace).light;
@@ -143,21 +143,21 @@ TEST(Adaptive, TheFrameIsThatOfItsRatesWithNothingOfThePilot) {
 TEST(Adaptive, ABudgetCountsThePilot) {
   const Scene scene = room();
   PathTracer tracer(scene, threads(2));
-  FrameSettings settings = settings_of("visible");
+  FrameSettings settings = settings_of("adaptive");
   for (const double spp : {5.0, 24.0}) {
-    settings.foveation.budget_spp = spp;
+    settings.foveation.spp = spp;
     const TracedFrame traced = FrameRenderer(tracer, settings).trace(request_of());
     EXPECT_NEAR(static_cast<double>(traced.sparse.stats.samples + traced.pilot.samples), spp * kWidth * kHeight, 2);
   }
-  settings.foveation.budget_spp = 0.5;
+  settings.foveation.spp = 0.5;
   EXPECT_THROW((void)FrameRenderer(tracer, settings).trace(request_of()), Error);
 }
 
 TEST(Adaptive, RatesKeepTheirLimits) {
   const Scene scene = room();
   PathTracer tracer(scene, threads(2));
-  FrameSettings settings = settings_of("visible");
-  settings.foveation.uniform_spp = 10;
+  FrameSettings settings = settings_of("adaptive");
+  settings.foveation.spp = 10;
   settings.foveation.min_spp = 6;
   settings.foveation.max_spp = 12;
   const TracedFrame traced = FrameRenderer(tracer, settings).trace(request_of());
@@ -175,7 +175,7 @@ TEST(Adaptive, WhatATargetPredictsComesOut) {
   const Scene scene = room();
   PathTracer tracer(scene, threads(2));
   FrameSettings fine = settings_of("uniform");
-  fine.foveation.uniform_spp = 4096;
+  fine.foveation.spp = 4096;
   fine.trace.seed = 99;
   TemporalHistory none;
   const std::vector<double> truth = luminances(FrameRenderer(tracer, fine).render(request_of(), none).frame);
@@ -185,7 +185,8 @@ TEST(Adaptive, WhatATargetPredictsComesOut) {
     double samples = 0;
     constexpr int kSeeds = 8;
     for (int seed = 1; seed <= kSeeds; ++seed) {
-      FrameSettings settings = settings_of("visible");
+      FrameSettings settings = settings_of("adaptive");
+      settings.foveation.spp.reset();
       settings.foveation.target.relmse = target;
       settings.trace.seed = static_cast<std::uint64_t>(seed);
       const RenderedFrame rendered = FrameRenderer(tracer, settings).render(request_of(), none);

@@ -52,8 +52,9 @@ FrameRequest request_of(std::int32_t frame) {
 
 FrameSettings settings_of(const std::string& filter, AccumulateMode mode = AccumulateMode::off) {
   FrameSettings settings;
-  settings.foveation.falloff = "mar";
-  settings.foveation.uniform_spp = 8;
+  DensitySampling density = parse_density("mar");
+  density.full_rate_spp = 8;
+  settings.foveation.sampling = density;
   settings.reconstruction.filter = filter;
   settings.accumulate.mode = mode;
   settings.threads = 2;
@@ -100,8 +101,8 @@ TEST(FrameRenderer, IsWhatASequenceIsMadeOf) {
   for (const AccumulateMode mode : {AccumulateMode::off, AccumulateMode::reproject}) {
     PipelineSettings settings;
     static_cast<FrameSettings&>(settings) = settings_of("guided", mode);
-    settings.foveation.falloff = "visible";
-    settings.foveation.budget_spp = 4;
+    settings.foveation.sampling = AdaptiveSampling{};
+    settings.foveation.spp = 4;
     settings.exposure.mode = ExposureMode::log_average;
     settings.exposure.smoothing_s = 0.2;
     PathTracer tracer(scene, threads(2));

@@ -191,8 +191,8 @@ FrameRequest request_of(std::int32_t frame) {
 
 FrameSettings one_sample() {
   FrameSettings settings;
-  settings.foveation.falloff = "uniform";
-  settings.foveation.uniform_spp = 1;
+  settings.foveation.sampling = UniformSampling{};
+  settings.foveation.spp = 1;
   settings.reconstruction.filter = "none";
   return settings;
 }

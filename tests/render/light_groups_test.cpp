@@ -195,8 +195,9 @@ TEST(LightGroups, LayersAddUpToThePictureUnderEveryFilter) {
   PathTracer tracer(scene, threads(2));
   for (const FilterInfo& filter : reconstruction_filters()) {
     FrameSettings settings;
-    settings.foveation.falloff = "mar";
-    settings.foveation.uniform_spp = 8;
+    DensitySampling density = parse_density("mar");
+    density.full_rate_spp = 8;
+    settings.foveation.sampling = density;
     settings.reconstruction.filter = filter.name;
     settings.threads = 2;
     TemporalHistory none;
@@ -219,8 +220,9 @@ TEST(LightGroups, LayersAddUpToThePictureUnderEveryFilter) {
 // Three frames of a camera that glides, as all the ways of accumulation make the last of them.
 RenderedFrame accumulated(PathTracer& tracer, const AccumulateSettings& accumulate, bool light) {
   FrameSettings settings;
-  settings.foveation.falloff = "mar";
-  settings.foveation.uniform_spp = 8;
+  DensitySampling density = parse_density("mar");
+  density.full_rate_spp = 8;
+  settings.foveation.sampling = density;
   settings.reconstruction.filter = "linear";
   settings.accumulate = accumulate;
   settings.layers.light = light;

@@ -104,7 +104,7 @@ TEST(MotionLayers, AreFiniteDifferencesOfPlaces) {
   const Scene scene = bodies();
   PathTracer tracer(scene, threads(2));
   FrameSettings settings;
-  settings.foveation.uniform_spp = 1;
+  settings.foveation.spp = 1;
   settings.reconstruction.filter = "none";
   settings.layers.forward = settings.layers.backward = settings.layers.position = true;
   FrameRequest request;
@@ -169,7 +169,7 @@ TEST(MotionLayers, TheSkyTurnsWithTheCameraAndWhatIsBehindItHasNoMotion) {
   const Scene scene = bodies();
   PathTracer tracer(scene, threads(1));
   FrameSettings settings;
-  settings.foveation.uniform_spp = 1;
+  settings.foveation.spp = 1;
   settings.reconstruction.filter = "none";
   settings.layers.forward = settings.layers.backward = true;
   FrameRequest request;

@@ -39,7 +39,7 @@ const Camera kCamera = camera_at({2, 2, 5}, {-0.5, 0.8, 0});
 // Single pixels of 32 samples in the middle, blocks of 2 and 4 around.
 SamplingMap foveated_map() {
   FoveationSettings settings;
-  settings.region_angles_deg = {10, 24};
+  std::get<RegionSampling>(settings.sampling).eccentricities_deg = {5, 12};
   return make_sampling_map(settings, view_of_perspective(50 * kRadPerDeg, kWidth, kHeight), Vec3d{0, 0, -1});
 }
 

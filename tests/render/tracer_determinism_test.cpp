@@ -62,8 +62,8 @@ void expect_same_bits(const SparseFrame& a, const SparseFrame& b, const Sampling
 
 SamplingMap foveated_map(int width_px, int height_px, const Vec3d& gaze) {
   FoveationSettings settings;
-  settings.region_samples = {8, 8, 4};
-  settings.region_angles_deg = {12, 30};
+  std::get<RegionSampling>(settings.sampling).samples = {8, 8, 4};
+  std::get<RegionSampling>(settings.sampling).eccentricities_deg = {6, 15};
   return make_sampling_map(settings, view_of_perspective(50 * kRadPerDeg, width_px, height_px), gaze);
 }
 

@@ -198,7 +198,7 @@ TEST(TracerMean, AFoveatedFrameHasTheUniformFramesMean) {
     return sum / (map.width_px * map.height_px);
   };
   FoveationSettings foveated;
-  foveated.region_angles_deg = {10, 25};
+  std::get<RegionSampling>(foveated.sampling).eccentricities_deg = {5, 12.5};
   const SamplingMap sparse =
       make_sampling_map(foveated, view_of_perspective(50 * kRadPerDeg, 61, 43), Vec3d{0.15, -0.1, -1});
   const SamplingMap dense = uniform_map(61, 43, 4);

@@ -84,7 +84,7 @@ inline FrameRequest frame_request(std::int32_t frame, const Camera& camera, int 
 
 inline SamplingMap uniform_map(int width_px, int height_px, std::uint32_t spp) {
   FoveationSettings settings;
-  settings.uniform_spp = spp;
+  settings.spp = spp;
   return make_sampling_map(settings, view_of_perspective(50 * kRadPerDeg, width_px, height_px), {});
 }
 

@@ -66,7 +66,7 @@ PipelineSettings settings_of(AccumulateMode mode, int window = 4) {
   PipelineSettings settings;
   settings.accumulate.mode = mode;
   settings.accumulate.window = window;
-  settings.foveation.region_samples = {8, 4, 4};
+  std::get<RegionSampling>(settings.foveation.sampling).samples = {8, 4, 4};
   settings.reconstruction.filter = "linear";
   settings.threads = 2;
   return settings;
@@ -179,8 +179,8 @@ double error_of(const Frame& frame, const Frame& reference) {
 // Many samples of another seed, unfiltered, of what the camera of a frame sees.
 Frame reference_of(const Scene& scene, int frame = 1, bool moves = false) {
   PipelineSettings exact = settings_of(AccumulateMode::off);
-  exact.foveation.falloff = "uniform";
-  exact.foveation.uniform_spp = 2048;
+  exact.foveation.sampling = UniformSampling{};
+  exact.foveation.spp = 2048;
   exact.reconstruction.filter = "none";
   exact.trace.seed = 99;
   return render(scene, plan_of({frame}, {}, moves), exact).at(frame);
@@ -192,8 +192,8 @@ TEST(TwoSidedRender, ErrorFallsWithTheWindowAsFromOneSide) {
   const Frame reference = reference_of(scene);
   const auto uniform = [&](AccumulateMode mode, int window) {
     PipelineSettings settings = settings_of(mode, window);
-    settings.foveation.falloff = "uniform";
-    settings.foveation.uniform_spp = 4;
+    settings.foveation.sampling = UniformSampling{};
+    settings.foveation.spp = 4;
     settings.reconstruction.filter = "none";
     settings.accumulate.frames = 0;
     return settings;
@@ -212,8 +212,8 @@ TEST(TwoSidedRender, ErrorFallsWithTheWindowAsFromOneSide) {
 
 PipelineSettings guided(AccumulateMode mode, int window, std::uint32_t spp) {
   PipelineSettings settings = settings_of(mode, window);
-  settings.foveation.falloff = "uniform";
-  settings.foveation.uniform_spp = spp;
+  settings.foveation.sampling = UniformSampling{};
+  settings.foveation.spp = spp;
   settings.reconstruction.filter = "guided";
   return settings;
 }
@@ -271,8 +271,8 @@ TEST(TwoSidedRender, AFrameThatHoldsDoesNotDependOnWhichOthersAreRendered) {
   const Scene scene = room(false);
   PipelineSettings settings = guided(AccumulateMode::two_sided, 3, 1);
   settings.accumulate.hold = 3;
-  settings.foveation.falloff = "visible";
-  settings.foveation.budget_spp = 8;
+  settings.foveation.sampling = AdaptiveSampling{};
+  settings.foveation.spp = 8;
   settings.foveation.max_block_px = 1;
   const auto look_along = [](std::vector<FrameRequest>& frames) {
     for (FrameRequest& request : frames) {
@@ -340,9 +340,9 @@ TEST(TwoSidedRender, AFilterSeesWhatOtherViewsSawOfASurface) {
 
 TEST(TwoSidedRender, AFrameOfAViewThatMovesDoesNotDependOnWhichOthersAreRendered) {
   const Scene scene = room(false);
-  for (const char* falloff : {"uniform", "regions"}) {
+  for (const char* sampling : {"uniform", "regions"}) {
     PipelineSettings settings = guided(AccumulateMode::two_sided, 2, 2);
-    settings.foveation.falloff = falloff;
+    settings.foveation.sampling = parse_sampling(sampling);
     const auto whole = render(scene, plan_of(numbers(1, 9), {}, true), settings);
     settings.threads = 1;
     const auto middle = render(scene, plan_of({4, 6}, {2, 3, 5, 7, 8}, true), settings);

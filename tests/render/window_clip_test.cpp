@@ -50,8 +50,8 @@ TEST(WindowClip, WindowsAreLitByWhatTheWholeFrameLearns) {
   judged.sequence_frames = 24;
   judged.runs = {{request_of(1), request_of(2)}};
   FrameSettings settings;
-  settings.foveation.falloff = "uniform";
-  settings.foveation.uniform_spp = 1;
+  settings.foveation.sampling = UniformSampling{};
+  settings.foveation.spp = 1;
   settings.reconstruction.filter = "guided";
   settings.frames_per_second = 24;
   settings.threads = 2;
@@ -78,8 +78,8 @@ FrameSettings job_settings(std::uint64_t seed) {
   settings.reconstruction.filter = "guided";
   settings.trace.learn_light = true;
   settings.trace.clamp_indirect = 0.1;
-  settings.foveation.falloff = "visible";
-  settings.foveation.budget_spp = 1;
+  settings.foveation.sampling = AdaptiveSampling{};
+  settings.foveation.spp = 1;
   settings.foveation.min_spp = 20;
   settings.foveation.target.jod = 9;
   return settings;

@@ -37,7 +37,7 @@ inline std::vector<std::string> fuzz_files() {
   return {
       "scene",      "scene-render", "picture-png", "picture-jpg", "picture-exr",   "picture-hdr", "job",
       "sweep-plan", "checkpoint",   "traced",      "run-record",  "timing",        "parts",       "farm",
-      "chunks",     "results",      "display",     "aois",        "falloff-table",
+      "chunks",     "results",      "display",     "aois",        "density-curve",
   };
 }
 
@@ -63,7 +63,7 @@ struct SmallRun {
     request.camera = test::camera_at({0.5, 0.5, 3}, {0, 0, 0});
     request.view = view_of_perspective(50 * kRadPerDeg, request.width_px, request.height_px);
     request.gaze_direction_render = request.gaze_direction_true = request.view.direction(4, 3);
-    settings.foveation.region_samples = {4, 2, 2};
+    std::get<RegionSampling>(settings.foveation.sampling).samples = {4, 2, 2};
     settings.reconstruction.filter = "guided";
     settings.accumulate.mode = mode;
     settings.exposure.mode = ExposureMode::log_average;
@@ -299,8 +299,8 @@ inline bool read_file(const std::string& target, const std::string& path, std::s
       static_cast<void>(load_display(path));
     } else if (target == "aois") {
       static_cast<void>(load_aois(path, std::nullopt));
-    } else if (target == "falloff-table") {
-      static_cast<void>(load_falloff_table(path));
+    } else if (target == "density-curve") {
+      static_cast<void>(load_density_curve(path));
     } else {
       require(false, "there is no such target");
     }

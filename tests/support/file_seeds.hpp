@@ -163,7 +163,7 @@ inline std::vector<FileSeed> file_seeds(const std::string& folder) {
   files.push_back({"job", "defaults", job_as_toml(Job{})});
   files.push_back({"job", "some",
                    "scene = \"a.gltf\"\nsize = \"64x36\"\nframes = \"1-3,7\"\nspp = 4\noutput = \"o.####.exr\"\n"
-                   "falloff = \"mar\"\ngaze-process = [\"median\"]\nfps = 23.976\n"});
+                   "density = \"mar\"\ngaze-process = [\"median\"]\nfps = 23.976\n"});
   files.push_back({"sweep-plan", "small", R"(title = "t"
 [common]
 screen = "paper"
@@ -182,7 +182,7 @@ name = "log"
 gaze = "g.csv"
 [[setting]]
 label = "x"
-falloff = "mar"
+density = "mar"
 [grid]
 spp = [1, 2]
 filter = ["linear", "guided"]
@@ -208,7 +208,7 @@ metrics = ["flip"]
        "[[aoi]]\nname = \"a\"\nrectangle = [0.1, 0.1, 0.4, 0.5]\n[[aoi]]\nname = \"b\"\nellipse = [0.5, 0.5, 0.1, "
        "0.1]\n"
        "[[aoi]]\nname = \"c\"\npolygon = [[0, 0], [0.1, 0], [0, 0.2]]\n[[aoi]]\nname = \"d\"\nnode = \"vase*\"\n"});
-  files.push_back({"falloff-table", "three", "ecc_deg,density\n0,1\n10,0.5\n40,0.01\n"});
+  files.push_back({"density-curve", "three", "ecc_deg,density\n0,1\n10,0.5\n40,0.01\n"});
   return files;
 }
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/hash.hpp"
-#include "foveation/falloff.hpp"
+#include "foveation/model.hpp"
 #include "foveation/sites.hpp"
 #include "gazetrace/guides.hpp"
 

@@ -49,9 +49,9 @@ inline Frame even_frame(double radiance, float count, float variance = 0) {
 // A map with one site per pixel, or per block.
 inline SamplingMap map_of(int block_px = 1) {
   FoveationSettings settings;
-  settings.falloff = "regions";
-  settings.region_blocks_px = {block_px, block_px};
-  settings.region_angles_deg = {1e-3, 2e-3};
+  settings.sampling = RegionSampling{};
+  std::get<RegionSampling>(settings.sampling).blocks_px = {block_px, block_px};
+  std::get<RegionSampling>(settings.sampling).eccentricities_deg = {0.0005, 0.001};
   const PlanarView view = view_of_perspective(50 * kRadPerDeg, kWidth, kHeight);
   // The gaze is far aside, so that everything is periphery.
   return block_px == 1 ? make_sampling_map(FoveationSettings{}, view, {})

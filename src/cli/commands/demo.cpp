@@ -125,7 +125,7 @@ std::vector<Step> steps_of(const DemoArguments& arguments, const fs::path& data,
   std::vector<Step> steps{
       {"Frames that are sampled where the eye looked", render("foveated", {})},
       {"The same frames with one sample in every pixel, which takes about the same time",
-       render("uniform", {"--falloff", "uniform", "--spp", "1"})},
+       render("uniform", {"--sampling", "uniform", "--spp", "1"})},
   };
   if (has_ffmpeg) {
     steps.push_back(

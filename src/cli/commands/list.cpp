@@ -55,9 +55,24 @@ std::vector<Member> view_members(const ListArguments& arguments) {
   return members;
 }
 
+std::vector<Member> density_members(const ListArguments& /*arguments*/) {
+  std::vector<Member> members;
+  for (const DensityInfo& info : densities()) {
+    std::string parameters;
+    for (const NamedParameter& parameter : info.parameters) {
+      parameters += fmt::format("{}{}={}", parameters.empty() ? "; " : " ", parameter.name,
+                                parameter.words.empty() ? fmt::format("{:.4g}", parameter.value)
+                                                        : fmt::format("{}", fmt::join(parameter.words, "|")));
+    }
+    members.push_back({info.name, info.description + parameters});
+  }
+  return members;
+}
+
 std::vector<Family> families() {
   return {
-      {"falloffs", "--falloff", [](const auto&) { return members_of(falloffs()); }},
+      {"samplings", "--sampling", [](const auto&) { return members_of(samplings()); }},
+      {"densities", "--density", density_members},
       {"presets", "--preset",
        [](const auto&) {
          std::vector<Member> members;
@@ -124,7 +139,11 @@ std::string family_text(const Family& family, const std::vector<Member>& members
 // Longer than all families together, and so only where it is asked for.
 constexpr const char* kOptions = "options";
 
-int run_list(const ListArguments& arguments) {
+int run_list(ListArguments arguments) {
+  if (arguments.family == "falloffs") {  // understood for one version
+    print_warnings({"'falloffs' are now 'samplings' and 'densities'"});
+    arguments.family = "densities";
+  }
   if (arguments.family == kOptions) {
     arguments.json.print(arguments.markdown ? options_as_markdown(job_schema()) : options_as_text(job_schema()),
                          [] { return options_as_json(job_schema()); });

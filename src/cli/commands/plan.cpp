@@ -50,13 +50,13 @@ FrameCounts count_samples(const FrameRequest& request, const JobSettings& job) {
   counts.regions = map.regions;
   counts.traced_samples = map.samples();
   for (const MapRegion& region : map.regions) {
-    counts.uniform_samples += static_cast<double>(region.pixels) * settings.uniform_spp;
+    counts.uniform_samples += static_cast<double>(region.pixels) * settings.spp.value_or(kUsualSpp);
     counts.nominal_samples += region.nominal_samples;
   }
   return counts;
 }
 
-std::string counts_as_table(const std::vector<FrameCounts>& frames, std::uint32_t uniform_spp) {
+std::string counts_as_table(const std::vector<FrameCounts>& frames, double uniform_spp) {
   std::string text;
   for (const FrameCounts& counts : frames) {
     text += fmt::format("frame {}\n  {:<14}{:>12}{:>12}{:>16}{:>14}\n", counts.frame, "region", "pixels", "sites",
@@ -76,7 +76,7 @@ std::string counts_as_table(const std::vector<FrameCounts>& frames, std::uint32_
          "them\n";
 }
 
-std::string counts_as_json(const std::vector<FrameCounts>& frames, std::uint32_t uniform_spp) {
+std::string counts_as_json(const std::vector<FrameCounts>& frames, double uniform_spp) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const FrameCounts& counts : frames) {
     nlohmann::ordered_json regions = nlohmann::ordered_json::array();
@@ -137,14 +137,14 @@ void print_chunks(const std::vector<FrameChunk>& chunks, const std::optional<dou
 
 /// Before anything is loaded or warned of, so that a refusal is the only line.
 void check_counts_are_known(const FoveationSettings& foveation) {
-  if (foveation.falloff == "visible") {
-    throw Error(ErrorKind::usage, "`falloff`", "counts that a pilot decides are known once it is rendered",
+  if (looks_first(foveation.sampling)) {
+    throw Error(ErrorKind::usage, "`sampling`", "counts that a pilot decides are known once it is rendered",
                 "give another one, or render and read timing.csv");
   }
   if (foveation.target.is_given()) {
     throw Error(ErrorKind::usage, "`counts`",
                 "counts that follow from a target or a time are known once it is rendered",
-                "give a budget, or render and read timing.csv");
+                "give `spp`, or render and read timing.csv");
   }
 }
 
@@ -202,7 +202,7 @@ int run_plan(const PlanArguments& arguments) {
   for (const FrameRequest& request : resolved.plan.frames) {
     counts.push_back(count_samples(request, job));
   }
-  const std::uint32_t spp = job.foveation.uniform_spp;
+  const double spp = job.foveation.spp.value_or(kUsualSpp);
   arguments.json.print(counts_as_table(counts, spp), [&] { return counts_as_json(counts, spp); });
   return exit_done;
 }

@@ -85,7 +85,7 @@ FrameRate thinned(const FrameRate& rate, const std::vector<std::int32_t>& frames
 
 const JobSettings* foveated_run(const CompareInputs& inputs) {
   for (const auto* const run : {&inputs.test_run, &inputs.reference_run}) {
-    if (*run && (*run)->settings().foveation.falloff != "uniform") {
+    if (*run && !is_uniform((*run)->settings().foveation.sampling)) {
       return &(*run)->settings();
     }
   }
@@ -93,13 +93,9 @@ const JobSettings* foveated_run(const CompareInputs& inputs) {
 }
 
 std::vector<double> ring_angles_deg(const JobSettings* run) {
-  std::vector<double> angles;
-  if (run != nullptr && run->foveation.falloff == "regions") {
-    for (const double angle : run->foveation.region_angles_deg) {
-      angles.push_back(eccentricity_share(run->foveation.reading) * angle);
-    }
-  }
-  return angles;
+  const RegionSampling* const regions = run == nullptr ? nullptr : regions_of(run->foveation.sampling);
+  return regions == nullptr ? std::vector<double>()
+                            : std::vector(regions->eccentricities_deg.begin(), regions->eccentricities_deg.end());
 }
 
 class FrameMaker {

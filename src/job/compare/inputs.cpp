@@ -36,13 +36,12 @@ std::vector<std::int32_t> frames_of_both(const CompareJob& job) {
 
 // Where the test was foveated by regions, those; else the reference's; else the source paper's.
 RetinalRegions regions_of(const CompareJob& job, const CompareInputs& inputs) {
-  if (job.region_angles_deg) {
-    return retinal_regions(*job.region_angles_deg, job.reading);
+  if (job.region_eccentricities_deg) {
+    return retinal_regions(*job.region_eccentricities_deg);
   }
   for (const auto* const run : {&inputs.test_run, &inputs.reference_run}) {
-    if (*run && (*run)->settings().foveation.falloff == "regions") {
-      const FoveationSettings& foveation = (*run)->settings().foveation;
-      return retinal_regions(foveation.region_angles_deg, foveation.reading);
+    if (const RegionSampling* const regions = *run ? regions_of((*run)->settings().foveation.sampling) : nullptr) {
+      return retinal_regions(regions->eccentricities_deg);
     }
   }
   return {};

@@ -35,10 +35,8 @@ void add_sequence_options(OptionSchema<CompareJob>& schema) {
                "t_video = scale (t_log - start) + offset");
   schema.value("--gaze-start", shared(&JobSettings::gaze_start), "DURATION",
                "Time on the log's clock that is video time --gaze-offset; default: its first sample");
-  schema.value("--region-angles", &CompareJob::region_angles_deg, "DEG,DEG",
-               "Where fovea and intermediate region end; default: those of the run, else 5.2,17");
-  schema.value("--angle-reading", &CompareJob::reading, choices<AngleReading>(),
-               "The angles are diameters (full-angle) or eccentricities");
+  schema.value("--region-eccentricities", &CompareJob::region_eccentricities_deg, "DEG,DEG",
+               "Where fovea and intermediate region end; default: those of the run, else 2.6,8.5");
   schema.value("--frame-rect", shared(&JobSettings::frame_rect), "X,Y,W,H",
                "Where the frame lies on the screen, in screen pixels; default: as rendered, else it fills the screen");
 }

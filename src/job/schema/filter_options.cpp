@@ -9,7 +9,7 @@ void add_filter_options(JobSchema& schema) {
   schema
       .value("--filter", &JobSettings::filter, "NAME", Touch::filter,
              "Fills pixels between samples and takes noise away ('gazetrace list filters'; where the samples are is "
-             "--falloff, which has a 'linear', too). auto: guided; linear, "
+             "--density, which has a 'linear', too). auto: guided; linear, "
              "which passes single pixels through, with --accumulate-order before, and for uniform frames "
              "with --accumulate running or --only-pixel")
       .checked_by(check_filter_name)

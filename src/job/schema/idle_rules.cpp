@@ -20,8 +20,8 @@ JobIdleRule without_gaze() {
 }
 
 JobIdleRule without_density() {
-  return {"without gaze (unless `falloff` follows a picture)",
-          [](const JobSettings& job) { return !has_gaze(job) && !follows_picture(job.foveation); },
+  return {"without gaze (unless `sampling` follows a picture)",
+          [](const JobSettings& job) { return !has_gaze(job) && !follows_picture(job.foveation.sampling); },
           [](const JobSettings&) { return std::string("without gaze"); }};
 }
 
@@ -30,15 +30,16 @@ JobIdleRule without_gaze_log() {
 }
 
 JobIdleRule with_uniform() {
-  return {"with `falloff` uniform", [](const JobSettings& job) { return job.foveation.falloff == "uniform"; }};
+  return {"with `sampling` uniform", [](const JobSettings& job) { return is_uniform(job.foveation.sampling); }};
 }
 
 JobIdleRule with_regions() {
-  return {"with `falloff` regions", [](const JobSettings& job) { return job.foveation.falloff == "regions"; }};
+  return {"with `sampling` regions",
+          [](const JobSettings& job) { return regions_of(job.foveation.sampling) != nullptr; }};
 }
 
 JobIdleRule without_regions() {
-  return with_other_falloffs({"regions"});
+  return with_other_sampling("regions");
 }
 
 JobIdleRule without_reproject() {
@@ -75,12 +76,10 @@ JobIdleRule with_lights_sampled_alone() {
           [](const JobSettings& job) { return job.trace.light_sampling == LightSampling::light_only; }};
 }
 
-JobIdleRule with_other_falloffs(const std::vector<std::string>& models) {
-  return {fmt::format("with any other `falloff` than {}", fmt::join(models, " or ")),
-          [models](const JobSettings& job) {
-            return std::find(models.begin(), models.end(), job.foveation.falloff) == models.end();
-          },
-          [](const JobSettings& job) { return "with `falloff` " + job.foveation.falloff; }};
+JobIdleRule with_other_sampling(const std::string& name) {
+  return {fmt::format("with another `sampling` than {}", name),
+          [name](const JobSettings& job) { return traits_of(job.foveation.sampling).name != name; },
+          [](const JobSettings& job) { return fmt::format("with `sampling` {}", to_string(job.foveation.sampling)); }};
 }
 
 }  // namespace gazetrace

@@ -15,7 +15,7 @@ bool has_gaze_log(const JobSettings& job);
 bool has_gaze(const JobSettings& job);  // from a log or fixed
 
 JobIdleRule without_gaze();
-// Without gaze, except for a fall-off that follows a picture.
+// Without gaze, except for a sampling that follows a picture.
 JobIdleRule without_density();
 JobIdleRule without_gaze_log();
 JobIdleRule with_uniform();
@@ -28,7 +28,6 @@ JobIdleRule without_reprojection();  // neither reproject nor two-sided
 JobIdleRule without_aov(const std::string& name);
 JobIdleRule without_automatic_exposure();
 JobIdleRule with_lights_sampled_alone();
-// With any fall-off except these.
-JobIdleRule with_other_falloffs(const std::vector<std::string>& models);
+JobIdleRule with_other_sampling(const std::string& name);
 
 }  // namespace gazetrace

@@ -36,9 +36,8 @@ constexpr double kDefensiveShare = 0.25;
 constexpr double kLeastRate = 1e-3;  // samples a pixel: below, nothing can be extrapolated
 
 // Samples a pixel, the pilot's among them.
-double budget_spp_of(const FoveationSettings& foveation, const FrameRequest& request) {
-  return foveation.budget_samples ? static_cast<double>(*foveation.budget_samples) / pixels_of(request)
-                                  : foveation.budget_spp.value_or(foveation.uniform_spp);
+double budget_spp_of(const FoveationSettings& foveation) {
+  return foveation.spp.value_or(kUsualSpp);
 }
 
 // Of the first pilot on a budget, in samples a pixel of its own.
@@ -74,7 +73,7 @@ class RateFinder {
       meet_target();
     } else {
       check_pilot_budget(settings_.foveation, request_);
-      spend(budget_spp_of(settings_.foveation, request_));
+      spend(budget_spp_of(settings_.foveation));
     }
     result_.spp = mean_of(result_.rates);
     return std::move(result_);
@@ -210,17 +209,18 @@ ImageGray rates_between(const ImageGray& wanted, double spp, double least, doubl
 }
 
 void check_pilot_budget(const FoveationSettings& settings, const FrameRequest& request) {
-  const double spp = budget_spp_of(settings, request);
+  const double spp = budget_spp_of(settings);
   const int cell_px = pilot_cell_px(request);
   const PlanarView view = pilot_view(request, cell_px);
   const double pilot = first_pilot_spp(spp, cell_px) * view.width_px * view.height_px;
   if (!(pilot < spp * pixels_of(request))) {
     throw Error(
-        ErrorKind::usage, settings.budget_samples ? "`budget-samples`" : "`budget-spp`",
-        fmt::format("the pilot of `falloff` visible takes {:.0f} samples of a frame of {} x {} pixels, the budget "
-                    "is {:.0f}",
-                    pilot, request.width_px, request.height_px, spp * pixels_of(request)),
-        "give more, by `budget-spp` or, where nothing else is a budget, by `spp`");
+        ErrorKind::usage, "`spp`",
+        fmt::format(
+            "the pilot of `sampling` adaptive takes {:.0f} samples of a frame of {} x {} pixels, and it may have "
+            "{:.0f}",
+            pilot, request.width_px, request.height_px, spp * pixels_of(request)),
+        "give more");
   }
 }
 

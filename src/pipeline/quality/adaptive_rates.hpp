@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rates of the fall-off `visible`: where a pilot of the frame says that samples are needed, as many as the budget
+// The rates of AdaptiveSampling: where a pilot of the frame says that samples are needed, as many as the budget
 // or the target asks for.
 //
 // With e^2(x) the squared error of a pixel for each unit of 1/n, n(x) samples a pixel leave the error e^2 / n. The sum

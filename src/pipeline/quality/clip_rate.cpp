@@ -33,7 +33,7 @@ constexpr double kFirstReferenceSpp = 128, kMostReferenceSpp = 16384;
 
 // Frames that do not share their rates have a pilot each.
 double least_rate(const WindowClip& clip, const FrameSettings& settings, const FrameRequest& request) {
-  const bool has_pilots = settings.foveation.falloff == "visible" && !clip.is_steady();
+  const bool has_pilots = looks_first(settings.foveation.sampling) && !clip.is_steady();
   const double least = std::max(kLeastRateSpp, settings.foveation.min_spp);
   return has_pilots ? std::max(least, 4 * least_pilot_spp(request)) : least;
 }
@@ -156,7 +156,7 @@ ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSe
 
 FrameSettings with_rate(FrameSettings settings, const ClipRate& rate) {
   settings.foveation.target = {};
-  settings.foveation.budget_spp = rate.spp;
+  settings.foveation.spp = rate.spp;
   if (!rate.rates.empty()) {
     settings.rates_of = [rates = rate.rates](const FrameRequest&) { return FrameRates{rates, 0}; };
   }

@@ -25,7 +25,7 @@ constexpr double kMostOfReference = 0.25;
 constexpr double kMostScatterJod = 0.08;
 
 struct ClipRate {
-  double spp = 0;            // samples a pixel, a mean over the frame: FoveationSettings::budget_spp
+  double spp = 0;            // samples a pixel, a mean over the frame: FoveationSettings::spp
   double predicted_jod = 0;  // of the sequence, at this rate
   TraceStats discarded;      // all samples of the looks
   double ms = 0;             // what the choice took

@@ -8,7 +8,6 @@ namespace gazetrace {
 FrameSettings discarded(const FrameSettings& settings, std::uint64_t tag) {
   FrameSettings own = settings;
   own.foveation.target = {};
-  own.foveation.budget_samples.reset();
   own.trace.seed = hash_combine(hash_combine(settings.trace.seed, kLookTag), tag);
   own.trace.guides = false;
   own.trace.only_pixel.reset();
@@ -19,8 +18,8 @@ FrameSettings discarded(const FrameSettings& settings, std::uint64_t tag) {
 
 FrameSettings raw(FrameSettings settings, double spp, const char* filter) {
   settings.foveation = {};
-  settings.foveation.falloff = "uniform";
-  settings.foveation.budget_spp = spp;
+  settings.foveation.sampling = UniformSampling{};
+  settings.foveation.spp = spp;
   settings.accumulate = {};
   settings.reconstruction = {filter};
   settings.trace.clamp_indirect = 0;

@@ -22,9 +22,10 @@ constexpr std::uint64_t kPilotTag = 0x50494c4f54ULL;  // "PILOT"
 // Single pixels, however low the rates are: blocks of a small frame would stand for much larger ones of the frame.
 SamplingMap pilot_map(const PlanarView& view, const ImageGray& rates, const MapContext& context) {
   FoveationSettings settings;
-  settings.falloff = "map";
+  DensitySampling sampling = density_of_picture();
+  sampling.least_density = 1e-6;
+  settings.sampling = std::move(sampling);
   settings.max_block_px = 1;
-  settings.density_floor = 1e-6;
   MapContext own = context;
   own.density = &rates;
   return make_sampling_map(settings, view, std::nullopt, own);

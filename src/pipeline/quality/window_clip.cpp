@@ -170,18 +170,20 @@ void WindowClip::render(const FramePlan& plan, const FrameSettings& settings, st
 }
 
 WindowPictures WindowClip::look(double spp, std::uint64_t round) {
-  const bool is_uniform = settings_.foveation.falloff == "uniform";
-  const RatesOfLook rates = is_uniform ? RatesOfLook{} : rates_.of_look(spp, round, stats_);
+  const bool same_everywhere = is_uniform(settings_.foveation.sampling);
+  const RatesOfLook rates = same_everywhere ? RatesOfLook{} : rates_.of_look(spp, round, stats_);
   WindowPictures pictures;
   for (std::size_t w = 0; w < windows_.windows.size(); ++w) {
     FrameSettings own = discarded(settings_, hash_combine(hash_combine(kLookTag, round), w));
     own.light_of = [&](const FrameRequest& request) { return light_.of(request.frame, stats_); };
-    if (is_uniform) {
-      own.foveation.budget_spp = spp;
+    if (same_everywhere) {
+      own.foveation.spp = spp;
     } else {
-      // All that the fall-off thinks of eye and picture is in the rates.
-      own.foveation.falloff = own.foveation.falloff == "visible" ? "visible" : "map";
-      own.foveation.budget_spp.reset();
+      // All that the sampling thinks of eye and picture is in the rates.
+      if (!follows_picture(own.foveation.sampling)) {
+        own.foveation.sampling = density_of_picture();
+      }
+      own.foveation.spp.reset();
       own.rates_of = [&](const FrameRequest& request) { return rates.of(request, w); };
     }
     std::vector<ImageRgb> of_window = look_at(w, own);

@@ -40,8 +40,8 @@ class WindowClip {
   [[nodiscard]] double reference_spp() const { return reference_.spp(); }
   [[nodiscard]] double reference_q() const { return reference_q_; }  // Q of its own error
 
-  // The rates of the fall-off `visible` by the last look, for this mean, where all frames are looked at alike: they can
-  // share them. Empty for other fall-offs, and where view or gaze moves.
+  // The rates of a pilot by the last look, for this mean, where all frames are looked at alike: they can
+  // share them. Empty for other samplings, and where view or gaze moves.
   [[nodiscard]] ImageGray shared_rates(double spp) const { return rates_.shared(spp); }
   // Whether the sampling of all frames follows from the same view and gaze.
   [[nodiscard]] bool is_steady() const { return rates_.is_steady(); }

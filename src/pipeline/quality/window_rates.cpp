@@ -29,7 +29,7 @@ bool WindowRates::is_steady() const {
     return request.gaze_direction_render == first.gaze_direction_render;
   };
   const auto all_same = [&](const std::vector<FrameRequest>& run) { return std::all_of(run.begin(), run.end(), same); };
-  return !judged_.gaze_moves && !(settings_.foveation.falloff == "visible" && judged_.view_moves) &&
+  return !judged_.gaze_moves && !(looks_first(settings_.foveation.sampling) && judged_.view_moves) &&
          std::all_of(judged_.runs.begin(), judged_.runs.end(), all_same) && all_same(judged_.around);
 }
 
@@ -57,20 +57,20 @@ RatesOfLook WindowRates::of_look(double spp, std::uint64_t round, TraceStats& st
 // Blocks share what they expect, as in the frame.
 ImageGray WindowRates::expected_spp(const FrameRequest& request, double spp, std::uint64_t round, TraceStats& stats) {
   FrameSettings own = discarded(settings_, hash_combine(kRatesTag, round));
-  own.foveation.budget_spp = spp;
-  if (own.foveation.falloff != "visible") {
+  own.foveation.spp = spp;
+  if (!looks_first(own.foveation.sampling)) {
     return expected_spp_of(planned_sampling_map(own.foveation, request, own.trace.seed, settings_.threads));
   }
   ImageGray rates;
   if (is_steady()) {
     // Of pilots that may be larger than those of such a frame; what they say of the rates is brought to their mean.
-    own.foveation.budget_spp = std::max(spp, 16 * least_pilot_spp(request));
+    own.foveation.spp = std::max(spp, 16 * least_pilot_spp(request));
     shared_ = rates_between(sum_of_pilots(request, own, stats), spp, own.foveation.min_spp, own.foveation.max_spp);
     rates = shared_;
   } else {
     rates = pilot_rates(request, own, stats);
   }
-  own.foveation.budget_spp = mean_of(rates);
+  own.foveation.spp = mean_of(rates);
   MapContext context = map_context(request, own.trace.seed, settings_.threads);
   context.density = &rates;
   return expected_spp_of(make_sampling_map(own.foveation, request.view, request.gaze_direction_render, context));

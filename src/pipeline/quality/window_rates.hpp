@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rates that windows are sampled at: those that the fall-off gives to their pixels in the whole frame.
+// The rates that windows are sampled at: those that the sampling gives to their pixels in the whole frame.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +36,7 @@ class WindowRates {
   // Of all judged frames and those that they read, for `spp` samples a pixel on average. `round` chooses the samples of
   // pilots, which are added to `stats`.
   [[nodiscard]] RatesOfLook of_look(double spp, std::uint64_t round, TraceStats& stats);
-  // The rates of the fall-off `visible` by the last look, brought to this mean. Empty for other fall-offs, and where
+  // The rates of a pilot by the last look, brought to this mean. Empty for other samplings, and where
   // frames are not steady.
   [[nodiscard]] ImageGray shared(double spp) const;
 

@@ -91,9 +91,9 @@ void WindowReference::add_samples(double spp, std::size_t half) {
     pictures[v].resize(windows_.windows.size());
     for (std::size_t w = 0; w < windows_.windows.size(); ++w) {
       FrameSettings own = raw(discarded(settings_, hash_combine(tag, w)), spp, "none");
-      own.foveation.falloff = "map";
+      own.foveation.sampling = density_of_picture();
       own.foveation.max_block_px = 1;
-      own.foveation.budget_spp.reset();
+      own.foveation.spp.reset();
       own.trace.learn_light = settings_.trace.learn_light && light_of_ != nullptr;
       own.light_of = light_of_;
       own.rates_of = [&](const FrameRequest&) {

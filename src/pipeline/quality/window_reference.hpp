@@ -3,7 +3,7 @@
 // common, so that their difference tells the reference's own error.
 //
 // Around what counts, where only the metric's coarser bands look, a pixel gets a quarter of the samples. (Samples that
-// follow the visible noise, as those of the fall-off `visible` do, did not pay: FovVideoVDP saw as much of their
+// follow the visible noise, as those of AdaptiveSampling do, did not pay: FovVideoVDP saw as much of their
 // error.)
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What foveation itself gains, apart from what a filter gains: every fall-off model against uniform rendering through
+// What foveation itself gains, apart from what a filter gains: every density against uniform rendering through
 // the same filter.
 //   gazetrace_foveation_gain SCENE.gltf=SKY.hdr [--eye X,Y,Z --target X,Y,Z --fov DEG] --reference A.exr,B.exr,...
 //       --csv FILE [--size 960x540] [--budget 1] [--models all] [--filters none,linear,guided]
@@ -42,6 +42,7 @@
 #include "foveation_gain/tables.hpp"
 #include "gazetrace/error.hpp"
 #include "pixel_statistics.hpp"
+#include "support/sampling_models.hpp"
 
 namespace {
 
@@ -103,7 +104,7 @@ Arguments parse(int argc, char** argv) {
     } else if (name == "--size") {
       study.size = benchmark::parse_size(value);
     } else if (name == "--budget") {
-      study.budget_spp = std::strtod(value, nullptr);
+      study.spp = std::strtod(value, nullptr);
     } else if (name == "--models") {
       study.models = std::string_view(value) == "all" ? std::vector<std::string>{} : benchmark::parse_names(value);
     } else if (name == "--filters") {
@@ -141,7 +142,7 @@ Arguments parse(int argc, char** argv) {
   if (eye && target) {
     study.viewpoint = {*eye, *target, fov_deg};
   }
-  check_names("--models", study.models, names_of(falloffs()));
+  check_names("--models", study.models, all_models());
   check_names("--filters", study.filters, names_of(reconstruction_filters()));
   check_names("--metrics", study.metrics, {gain::kMetricNames.begin(), gain::kMetricNames.end()});
   if (study.gazes.empty()) {

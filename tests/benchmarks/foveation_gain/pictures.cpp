@@ -11,6 +11,7 @@
 #include "gazetrace/error.hpp"
 #include "gazetrace/fovvideovdp.hpp"
 #include "gazetrace/metrics.hpp"
+#include "support/sampling_models.hpp"
 
 namespace gazetrace::gain {
 namespace {
@@ -140,24 +141,22 @@ Picture Renderer::filtered(const Traced& traced, const std::string& filter) {
 }
 
 FoveationSettings model_settings(const std::string& model, double spp) {
-  FoveationSettings settings;
-  settings.falloff = model;
-  settings.parameters.table = {"", {{0, 1}, {5, 0.5}, {20, 0.1}, {60, 0.02}}};
-  settings.parameters.normalization = FalloffNormalization::relative;
-  settings.budget_spp = spp;
+  FoveationSettings settings = model_relative_to_fovea(model);
+  settings.spp = spp;
   return settings;
 }
 
 FoveationSettings uniform_settings(double spp) {
   FoveationSettings settings;
-  settings.falloff = "uniform";
-  settings.budget_spp = spp;
+  settings.sampling = UniformSampling{};
+  settings.spp = spp;
   return settings;
 }
 
 FoveationSettings blocks_settings(double spp) {
-  FoveationSettings settings = model_settings("table", spp);
-  settings.parameters.table.points = {{0, 0.5}, {180, 0.5}};  // where the density is 1, a block is a pixel
+  FoveationSettings settings;
+  settings.sampling = a_curve({{0, 0.5}, {180, 0.5}});  // where the density is 1, a block is a pixel
+  settings.spp = spp;
   return settings;
 }
 

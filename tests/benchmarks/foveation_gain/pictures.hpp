@@ -68,7 +68,7 @@ class Renderer {
   double guides_ms_ = 0, motion_ms_ = 0;
 };
 
-// A model of `falloffs()` scaled to an average count. Cut-off frequencies are relative to the fovea: measured against
+// A model of all_models() scaled to an average count. Cut-off frequencies are relative to the fovea: measured against
 // what so few pixels can show, most models would be flat.
 FoveationSettings model_settings(const std::string& model, double spp);
 FoveationSettings uniform_settings(double spp);

@@ -41,7 +41,7 @@ struct StageTimes {  // of a frame
 //               its own noise adds to every picture's
 //        score: an arm's errors at a gaze
 //        time:  what an arm took in round `seed`; `gaze` is "-" where it does not matter
-// arm    a fall-off model, "uniform X" (X times the budget), "low resolution", "in blocks", "paper" (regions with their
+// arm    a sampling, "uniform X" (X times the budget), "low resolution", "in blocks", "paper" (regions with their
 //        own counts), "foveal rate" (uniform with as many samples as paper has in the fovea)
 struct Row {
   std::string kind, scene, arm, filter, gaze;

@@ -16,6 +16,7 @@
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze.hpp"
 #include "gazetrace/output.hpp"
+#include "support/sampling_models.hpp"
 
 namespace gazetrace::gain {
 namespace {
@@ -81,11 +82,10 @@ class Study {
         small_(tracer_, world_.camera, {(settings.size.width_px + 1) / 2, (settings.size.height_px + 1) / 2},
                settings.clip_frames),
         rows_(settings.csv) {
-    for (const FalloffInfo& info : falloffs()) {
-      if (info.name != "uniform" && !info.from_picture &&
-          (settings_.models.empty() ||
-           std::find(settings_.models.begin(), settings_.models.end(), info.name) != settings_.models.end())) {
-        models_.push_back(info.name);
+    for (const std::string& name : all_models()) {
+      if (name != "uniform" && (settings_.models.empty() || std::find(settings_.models.begin(), settings_.models.end(),
+                                                                      name) != settings_.models.end())) {
+        models_.push_back(name);
       }
     }
     for (const std::string& filter : settings_.filters) {
@@ -183,7 +183,7 @@ void Study::arm(Judge& judge, Renderer& renderer, const std::string& name, int s
 void Study::errors_at(Judge& judge, int seed, std::size_t g) {
   const Gaze& gaze = settings_.gazes[g];
   const Gaze ahead{"", {0.5, 0.5}};
-  const double budget = settings_.budget_spp;
+  const double budget = settings_.spp;
   const double pixels = static_cast<double>(settings_.size.width_px) * settings_.size.height_px;
   const double small_pixels = static_cast<double>(small_.view().width_px) * small_.view().height_px;
   for (const double rate : kUniformRates) {
@@ -223,10 +223,9 @@ void Study::errors_of_seed(Judge& judge, int seed) {
 
 void Study::measure_errors() {
   Judge judge(settings_.reference, renderer_.view(), settings_.ev, settings_.gazes, settings_.metrics);
-  const std::string setup =
-      fmt::format("{}x{}{} budget {} ev {} references {} inputs {}", settings_.size.width_px, settings_.size.height_px,
-                  clip_text(settings_.clip_frames), settings_.budget_spp, judge.ev(), settings_.reference.size(),
-                  short_digest(judgement_of(settings_)));
+  const std::string setup = fmt::format("{}x{}{} budget {} ev {} references {} inputs {}", settings_.size.width_px,
+                                        settings_.size.height_px, clip_text(settings_.clip_frames), settings_.spp,
+                                        judge.ev(), settings_.reference.size(), short_digest(judgement_of(settings_)));
   fmt::print("{}: {}, {:.2f} pixels per degree\n", world_.name, setup, judge.pixels_per_degree());
   rows_.claim("setup", world_.name, setup);
   for (Row& row : judge.floor()) {
@@ -269,11 +268,11 @@ void Study::time_arm(const std::string& name, const Gaze& gaze, const FoveationS
 void Study::times_of_round(int round, const std::vector<Gaze>& gazes) {
   renderer_.forget_first_hits();
   for (const double rate : kUniformRates) {
-    time_arm(uniform_arm(rate), {kAnyGaze, {0.5, 0.5}}, uniform_settings(rate * settings_.budget_spp), round);
+    time_arm(uniform_arm(rate), {kAnyGaze, {0.5, 0.5}}, uniform_settings(rate * settings_.spp), round);
   }
   for (const Gaze& gaze : gazes) {
     for (const std::string& model : models_) {
-      time_arm(model, gaze, model_settings(model, settings_.budget_spp), round);
+      time_arm(model, gaze, model_settings(model, settings_.spp), round);
     }
   }
 }
@@ -290,9 +289,9 @@ void Study::measure_times() {
   }
   rows_.claim("timed", world_.name,
               fmt::format("{}x{}{} budget {} inputs {}", settings_.size.width_px, settings_.size.height_px,
-                          clip_text(settings_.clip_frames), settings_.budget_spp, short_digest(view_of(settings_))));
+                          clip_text(settings_.clip_frames), settings_.spp, short_digest(view_of(settings_))));
   // Memory that the first frame asks the system for is there afterwards.
-  renderer_.filtered(renderer_.trace(uniform_settings(settings_.budget_spp), std::nullopt, 0, surfaces_),
+  renderer_.filtered(renderer_.trace(uniform_settings(settings_.spp), std::nullopt, 0, surfaces_),
                      settings_.filters.back());
   for (int round = 1; round <= settings_.time_rounds; ++round) {
     const Stopwatch watch;

@@ -28,7 +28,7 @@ struct StudySettings {
   std::optional<benchmark::Viewpoint> viewpoint;
   benchmark::FrameSize size{960, 540};
   std::vector<std::string> reference;
-  double budget_spp = 1;
+  double spp = 1;
   std::vector<std::string> models;  // empty: all
   std::vector<std::string> filters{"none", "linear", "guided"};
   std::vector<std::string> metrics{"relmse", "flip", "fovvideovdp"};

@@ -82,8 +82,8 @@ class Bench {
   }
   [[nodiscard]] PipelineSettings reference_settings(std::uint64_t seed, bool still) const {
     PipelineSettings settings;
-    settings.foveation.falloff = "uniform";
-    settings.foveation.uniform_spp = reference_spp(still) / 2;
+    settings.foveation.sampling = UniformSampling{};
+    settings.foveation.spp = reference_spp(still) / 2;
     settings.reconstruction.filter = "linear";
     settings.trace.learn_light = false;
     settings.trace.seed = seed;

@@ -15,16 +15,10 @@
 #include "gazetrace/error.hpp"
 #include "gazetrace/foveation.hpp"
 #include "support/map_consistency.hpp"
+#include "support/sampling_models.hpp"
 
 namespace gazetrace {
 namespace {
-
-FoveationSettings model(const std::string& name) {
-  FoveationSettings settings;
-  settings.falloff = name;
-  settings.parameters.table = {"", {{0, 1}, {5, 0.5}, {20, 0.1}, {60, 0.02}}};
-  return settings;
-}
 
 PlanarView small_view() {
   return view_of_display(display_by_name("paper"), {}, 480, 270);
@@ -40,13 +34,10 @@ double expected_sum(const SamplingMap& map) {
 
 TEST(DensityMap, EveryModelGivesAConsistentMap) {
   const PlanarView view = small_view();
-  for (const FalloffInfo& info : falloffs()) {
-    if (info.from_picture) {
-      continue;  // density_picture_test.cpp
-    }
-    SCOPED_TRACE(info.name);
+  for (const std::string& name : all_models()) {
+    SCOPED_TRACE(name);
     for (const Vec2d at : {Vec2d{240, 135}, Vec2d{3.5, 200}, Vec2d{-4000, 100}}) {
-      const SamplingMap map = make_sampling_map(model(info.name), view, view.direction(at.x, at.y));
+      const SamplingMap map = make_sampling_map(model(name), view, view.direction(at.x, at.y));
       expect_consistent(map);
       // In all, the whole counts are what was expected to within one sample.
       EXPECT_NEAR(static_cast<double>(map.samples()), expected_sum(map), 1.01);
@@ -57,13 +48,13 @@ TEST(DensityMap, EveryModelGivesAConsistentMap) {
 TEST(DensityMap, BlocksAreTheSmallestThatExpectEnough) {
   const PlanarView view = small_view();
   const Vec3d gaze = view.direction(200.3, 100.8);
-  for (const std::string name : {"mar", "geisler-perry", "acuity", "linear", "retina", "log-polar", "table"}) {
+  for (const std::string name : {"mar", "geisler-perry", "acuity", "linear", "retina", "log-polar", "curve"}) {
     SCOPED_TRACE(name);
     for (const std::uint32_t spp : {32U, 3U}) {
       FoveationSettings settings = model(name);
-      settings.uniform_spp = spp;
+      density_of(settings).full_rate_spp = spp;
       const SamplingMap map = make_sampling_map(settings, view, gaze);
-      const ImageGray density = *falloff_density(settings, view, gaze);
+      const ImageGray density = *density_image(settings, view, gaze);
       const double wanted = std::min(settings.block_samples, static_cast<double>(spp));
       std::vector<PixelIndex> pixels;
       for (std::size_t i = 0; i < map.sites.size(); ++i) {
@@ -106,27 +97,20 @@ TEST(DensityMap, BlocksAreTheSmallestThatExpectEnough) {
 TEST(DensityMap, BudgetsAreMet) {
   const PlanarView view = view_of_display(display_by_name("paper"), {}, 480, 270);
   const double pixels = 480.0 * 270;
-  for (const FalloffInfo& info : falloffs()) {
-    if (info.from_picture) {
-      continue;  // density_picture_test.cpp
-    }
+  for (const std::string& name : all_models()) {
     for (const double spp : {0.13, 1.04, 7.5, 200.0}) {
       for (const Vec2d at : {Vec2d{240, 135}, Vec2d{475, 5}}) {
-        FoveationSettings settings = model(info.name);
-        settings.budget_spp = spp;
+        FoveationSettings settings = model(name);
+        settings.spp = spp;
         const SamplingMap map = make_sampling_map(settings, view, view.direction(at.x, at.y));
         expect_consistent(map);
-        EXPECT_NEAR(static_cast<double>(map.samples()) / (spp * pixels), 1, 1e-3) << info.name << " " << spp;
-        settings.budget_spp.reset();
-        settings.budget_samples = static_cast<std::uint64_t>(spp * pixels) + 17;
-        const SamplingMap exact = make_sampling_map(settings, view, view.direction(at.x, at.y));
-        EXPECT_NEAR(static_cast<double>(exact.samples()), static_cast<double>(*settings.budget_samples), 1.01);
+        EXPECT_NEAR(static_cast<double>(map.samples()), spp * pixels, 1.01) << name << " " << spp;
       }
     }
   }
   // Frames without gaze, too.
   FoveationSettings settings;
-  settings.budget_spp = 1.04;
+  settings.spp = 1.04;
   const SamplingMap map = make_sampling_map(settings, view, std::nullopt);
   EXPECT_NEAR(static_cast<double>(map.samples()), 1.04 * pixels, 1.01);
   EXPECT_EQ(map.regions[0].block_px, 1);
@@ -135,9 +119,9 @@ TEST(DensityMap, BudgetsAreMet) {
 TEST(DensityMap, ABudgetBeyondEveryLimitIsRefusedAndOneJustBelowIsMet) {
   const PlanarView view = view_of_perspective(1.0, 20, 20);
   FoveationSettings settings = model("mar");
-  settings.budget_samples = 400'000'001;
+  settings.spp = 1'000'000.1;
   EXPECT_THROW(make_sampling_map(settings, view, view.direction(3, 3)), Error);
-  settings.budget_samples = 399'000'000;  // nearly all sites at their limit of 10^6 a pixel
+  settings.spp = 399e6 / 400;  // nearly all sites at their limit of 10^6 a pixel
   const SamplingMap map = make_sampling_map(settings, view, view.direction(3, 3));
   EXPECT_NEAR(static_cast<double>(map.samples()), 399e6, 1.01);
   for (const Site& site : map.sites) {
@@ -150,7 +134,7 @@ TEST(DensityMap, WholeRatesStayAsTheyAre) {
   const Vec3d gaze = view.direction(200, 100);
   const SamplingMap before = make_sampling_map({}, view, gaze);
   FoveationSettings settings;
-  settings.budget_samples = before.samples();
+  settings.spp = static_cast<double>(before.samples()) / (view.width_px * view.height_px);
   const SamplingMap same = make_sampling_map(settings, view, gaze);
   ASSERT_EQ(same.sites.size(), before.sites.size());
   for (std::size_t i = 0; i < before.sites.size(); ++i) {
@@ -164,37 +148,34 @@ TEST(DensityMap, MirrorSymmetricAboutTheGaze) {
   // The gaze on the corner between four blocks of every size, in the middle of the frame.
   const PlanarView view = view_of_perspective(1.1, 128, 64);
   const Vec3d gaze = view.direction(64, 32);
-  for (const FalloffInfo& info : falloffs()) {
-    if (info.from_picture) {
-      continue;  // density_picture_test.cpp
-    }
-    FoveationSettings settings = model(info.name);
+  for (const std::string& name : all_models()) {
+    FoveationSettings settings = model(name);
     const SamplingMap map = make_sampling_map(settings, view, gaze);
-    const auto density = falloff_density(settings, view, gaze);
-    const bool top_is_bottom = info.name != "retina";  // its upper meridian differs from the lower
+    const auto density = density_image(settings, view, gaze);
+    const bool top_is_bottom = name != "retina";  // its upper meridian differs from the lower
     for (int y = 0; y < 64; ++y) {
       for (int x = 0; x < 128; ++x) {
-        ASSERT_EQ(map.region(x, y), map.region(127 - x, y)) << info.name << " " << x << "," << y;
+        ASSERT_EQ(map.region(x, y), map.region(127 - x, y)) << name << " " << x << "," << y;
         if (top_is_bottom) {
-          ASSERT_EQ(map.region(x, y), map.region(x, 63 - y)) << info.name << " " << x << "," << y;
+          ASSERT_EQ(map.region(x, y), map.region(x, 63 - y)) << name << " " << x << "," << y;
         }
         if (density) {
-          ASSERT_NEAR((*density)(x, y), (*density)(127 - x, y), 1e-6) << info.name;
+          ASSERT_NEAR((*density)(x, y), (*density)(127 - x, y), 1e-6) << name;
         }
       }
     }
   }
 }
 
-// The bump of a table may lie within one block.
-TEST(DensityMap, BlocksSeeTheBumpOfATable) {
+// The bump of a curve may lie within one block.
+TEST(DensityMap, BlocksSeeTheBumpOfACurve) {
   const PlanarView view = small_view();
   const Vec3d gaze = view.direction(240, 135);
-  FoveationSettings settings = model("table");
-  settings.parameters.table.points = {{0, 0.01}, {9.8, 0.01}, {10, 1}, {10.2, 0.01}, {60, 0.01}};
+  FoveationSettings settings;
+  settings.sampling = a_curve({{0, 0.01}, {9.8, 0.01}, {10, 1}, {10.2, 0.01}, {60, 0.01}});
   const SamplingMap map = make_sampling_map(settings, view, gaze);
   expect_consistent(map);
-  const ImageGray density = *falloff_density(settings, view, gaze);
+  const ImageGray density = *density_image(settings, view, gaze);
   for (int y = 0; y < view.height_px; ++y) {
     for (int x = 0; x < view.width_px; ++x) {
       const double side = map.regions[map.region(x, y)].block_px;
@@ -207,31 +188,23 @@ TEST(DensityMap, BlocksSeeTheBumpOfATable) {
 
 TEST(DensityMap, ExtremesGiveMaps) {
   const PlanarView plain = view_of_perspective(1.0, 61, 37);
-  for (const FalloffInfo& info : falloffs()) {
-    if (info.from_picture) {
-      continue;  // density_picture_test.cpp
-    }
-    SCOPED_TRACE(info.name);
+  for (const std::string& name : all_models()) {
+    SCOPED_TRACE(name);
     for (const Vec3d& gaze : {Vec3d{0, 0, 1}, Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, plain.direction(600, -370)}) {
-      expect_consistent(make_sampling_map(model(info.name), plain, gaze));
+      expect_consistent(make_sampling_map(model(name), plain, gaze));
     }
     const PlanarView dot = view_of_perspective(1.0, 1, 1);
-    expect_consistent(make_sampling_map(model(info.name), dot, dot.direction(0.5, 0.5)));
+    expect_consistent(make_sampling_map(model(name), dot, dot.direction(0.5, 0.5)));
     for (const double fov_deg : {0.1, 179.0}) {
       const PlanarView view = view_of_perspective(fov_deg * kRadPerDeg, 50, 30);
-      expect_consistent(make_sampling_map(model(info.name), view, view.direction(20, 3)));
+      expect_consistent(make_sampling_map(model(name), view, view.direction(20, 3)));
     }
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_THROW(make_sampling_map(model(info.name), plain, Vec3d{kNan, 0, -1}), Error);
-    EXPECT_THROW(make_sampling_map(model(info.name), plain, Vec3d{0, 0, 0}), Error);
+    EXPECT_THROW(make_sampling_map(model(name), plain, Vec3d{kNan, 0, -1}), Error);
+    EXPECT_THROW(make_sampling_map(model(name), plain, Vec3d{0, 0, 0}), Error);
   }
-  // Regions wider than the frame, and a floor of 1.
-  FoveationSettings settings;
-  settings.region_angles_deg = {300, 360};
-  const SamplingMap all_fovea = make_sampling_map(settings, plain, Vec3d{0, 0, -1});
-  EXPECT_EQ(all_fovea.samples(), 32U * 61 * 37);
-  settings = model("mar");
-  settings.density_floor = 1;
+  FoveationSettings settings = model("mar");  // a floor of 1
+  density_of(settings).least_density = 1;
   EXPECT_EQ(make_sampling_map(settings, plain, Vec3d{0, 0, -1}).samples(), 32U * 61 * 37);
 }
 

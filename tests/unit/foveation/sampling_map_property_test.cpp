@@ -25,13 +25,12 @@ struct Case {
 
 // The definition, written down plainly.
 int region_by_definition(const Case& c, int x, int y) {
-  const bool full = c.settings.reading == AngleReading::full_angle;
-  if (c.settings.shape == RegionShape::cone) {
+  const RegionSampling& regions = std::get<RegionSampling>(c.settings.sampling);
+  if (regions.shape == RegionShape::cone) {
     const Vec3d v{c.view.left + (x + 0.5) * c.view.step_x, c.view.top - (y + 0.5) * c.view.step_y, -1};
     const Vec3d n = cross(c.gaze, v);
     const double e = std::atan2(std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z), dot(c.gaze, v)) * 180 / kPi;
-    const double part = full ? 0.5 : 1.0;
-    return e <= part * c.settings.region_angles_deg[0] ? 0 : e <= part * c.settings.region_angles_deg[1] ? 1 : 2;
+    return e <= regions.eccentricities_deg[0] ? 0 : e <= regions.eccentricities_deg[1] ? 1 : 2;
   }
   if (c.gaze.z >= 0) {
     return 2;
@@ -40,8 +39,8 @@ int region_by_definition(const Case& c, int x, int y) {
   const double gaze_y = (c.view.top - c.gaze.y / -c.gaze.z) / c.view.step_y;
   const double square = (x + 0.5 - gaze_x) * (x + 0.5 - gaze_x) + (y + 0.5 - gaze_y) * (y + 0.5 - gaze_y);
   for (int r = 0; r < 2; ++r) {
-    const double angle = c.settings.region_angles_deg[static_cast<std::size_t>(r)];
-    const double radius = (full ? 0.5 : 1.0) * 2 * std::tan(0.5 * angle * kPi / 180) / c.view.step_x;
+    const double e = regions.eccentricities_deg[static_cast<std::size_t>(r)] * kPi / 180;
+    const double radius = (regions.shape == RegionShape::disc ? std::tan(e) : 2 * std::tan(e / 2)) / c.view.step_x;
     if (square <= radius * radius) {
       return r;
     }
@@ -132,17 +131,19 @@ class RandomCases {
       default:
         c.gaze = c.view.direction(real(0, 1) * width, real(0, 1) * height);
     }
-    c.settings.shape = pick(0, 2) == 0 ? RegionShape::disc : RegionShape::cone;
-    c.settings.reading = pick(0, 1) == 0 ? AngleReading::full_angle : AngleReading::eccentricity;
-    c.settings.unit = pick(0, 2) == 0 ? SampleUnit::per_pixel : SampleUnit::per_block;
+    RegionSampling& regions = std::get<RegionSampling>(c.settings.sampling);
+    const RegionShape disc = pick(0, 1) == 0 ? RegionShape::disc : RegionShape::disc_by_radius;
+    regions.shape = pick(0, 2) == 0 ? disc : RegionShape::cone;
+    regions.unit = pick(0, 2) == 0 ? SampleUnit::per_pixel : SampleUnit::per_block;
     const double wide = pick(0, 2) == 0 ? 179.9 : 1.5 * yfov_deg;
-    const double a = std::min(real(0, 1) * wide, 179.9);
-    const double b = std::min(real(0, 1) * wide, 179.9);
-    c.settings.region_angles_deg = {std::min(a, b), std::max(a, b)};
+    const double most = regions.shape == RegionShape::disc ? 89.95 : 179.9;
+    const double a = std::min(real(0, 1) * wide, most);
+    const double b = std::min(real(0, 1) * wide, most);
+    regions.eccentricities_deg = {std::min(a, b), std::max(a, b)};
     const int blocks = pick(0, 2) == 0 ? 64 : 9;
-    c.settings.region_blocks_px = {pick(1, blocks), pick(1, blocks)};
+    regions.blocks_px = {pick(1, blocks), pick(1, blocks)};
     c.text = std::to_string(width) + "x" + std::to_string(height) + " field " + std::to_string(yfov_deg) + " blocks " +
-             std::to_string(c.settings.region_blocks_px[0]) + "," + std::to_string(c.settings.region_blocks_px[1]);
+             std::to_string(regions.blocks_px[0]) + "," + std::to_string(regions.blocks_px[1]);
     return c;
   }
 
@@ -181,8 +182,8 @@ TEST(SamplingMapProperty, EqualsTheDefinitionAtEveryPixel) {
 TEST(SamplingMapProperty, MirrorSymmetricAboutTheGaze) {
   for (const RegionShape shape : {RegionShape::cone, RegionShape::disc}) {
     FoveationSettings settings;
-    settings.shape = shape;
-    settings.region_angles_deg = {20, 45};
+    std::get<RegionSampling>(settings.sampling).shape = shape;
+    std::get<RegionSampling>(settings.sampling).eccentricities_deg = {10, 22.5};
     const PlanarView view = view_of_perspective(1.2, 121, 80);
     const SamplingMap map = make_sampling_map(settings, view, view.direction(60.5, 40));
     for (int y = 0; y < 80; ++y) {
@@ -196,7 +197,7 @@ TEST(SamplingMapProperty, MirrorSymmetricAboutTheGaze) {
 
 TEST(SamplingMapProperty, DensityNeverRisesWithEccentricity) {
   FoveationSettings settings;
-  settings.region_angles_deg = {15, 40};
+  std::get<RegionSampling>(settings.sampling).eccentricities_deg = {7.5, 20};
   const PlanarView view = view_of_perspective(1.4, 160, 96);
   const Vec3d gaze = view.direction(45, 30);
   const SamplingMap map = make_sampling_map(settings, view, gaze);
@@ -213,16 +214,16 @@ TEST(SamplingMapProperty, DensityNeverRisesWithEccentricity) {
 TEST(SamplingMapProperty, ExtremeFrames) {
   FoveationSettings settings;
   const PlanarView dot = view_of_perspective(1.0, 1, 1);
-  settings.region_blocks_px = {64, 64};
+  std::get<RegionSampling>(settings.sampling).blocks_px = {64, 64};
   expect_consistent(make_sampling_map(settings, dot, dot.direction(0.5, 0.5)));
   expect_consistent(make_sampling_map(settings, dot, dot.direction(1e6, 0)));
   for (const int block : {1, 3, 7, 64}) {
-    settings.region_blocks_px = {block, 64};
+    std::get<RegionSampling>(settings.sampling).blocks_px = {block, 64};
     Case c;
     c.settings = settings;
     c.view = view_of_perspective(0.1 * kRadPerDeg, 16384, 16);
     c.gaze = c.view.direction(7000.3, 9);
-    c.settings.region_angles_deg = {1, 50};
+    std::get<RegionSampling>(c.settings.sampling).eccentricities_deg = {0.5, 25};
     const SamplingMap map = make_sampling_map(c.settings, c.view, c.gaze);
     expect_consistent(map);
     for (int y = 0; y < map.height_px; ++y) {

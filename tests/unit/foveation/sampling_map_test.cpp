@@ -25,7 +25,7 @@ PlanarView paper_view() {
 struct PaperCase {
   const char* name;
   RegionShape shape;
-  AngleReading reading;
+  std::array<double, 2> eccentricities_deg;
   Vec2d gaze_px;
   std::array<std::uint64_t, 3> pixels;
   std::array<double, 3> ratios;  // uniform 32 spp over 32/16/8, 32/8/4, 32/2/1, as printed
@@ -34,43 +34,33 @@ struct PaperCase {
 const PaperCase kPaperCases[] = {
     {"disc, diameter, center",
      RegionShape::disc,
-     AngleReading::full_angle,
+     {2.6, 8.5},
      {1920, 1080},
      {68488, 673600, 7552312},
      {30.64, 48.91, 88.46}},
     {"disc, radius, center",
-     RegionShape::disc,
-     AngleReading::eccentricity,
+     RegionShape::disc_by_radius,
+     {5.2, 17},
      {1920, 1080},
      {273988, 2694376, 5326036},
      {11.95, 17.14, 25.40}},
-    {"disc, diameter, corner",
-     RegionShape::disc,
-     AngleReading::full_angle,
-     {0, 0},
-     {17122, 168400, 8108878},
-     {50.31, 91.15, 233.05}},
+    {"disc, diameter, corner", RegionShape::disc, {2.6, 8.5}, {0, 0}, {17122, 168400, 8108878}, {50.31, 91.15, 233.05}},
     {"disc, radius, corner",
-     RegionShape::disc,
-     AngleReading::eccentricity,
+     RegionShape::disc_by_radius,
+     {5.2, 17},
      {0, 0},
      {68497, 673594, 7552309},
      {30.64, 48.91, 88.45}},
     {"cone, radius, center",
      RegionShape::cone,
-     AngleReading::eccentricity,
+     {5.2, 17},
      {1920, 1080},
      {275180, 2830344, 5188876},
      {11.68, 16.84, 25.17}},
-    {"cone, radius, corner",
-     RegionShape::cone,
-     AngleReading::eccentricity,
-     {0, 0},
-     {120721, 973251, 7200428},
-     {23.37, 34.88, 55.30}},
+    {"cone, radius, corner", RegionShape::cone, {5.2, 17}, {0, 0}, {120721, 973251, 7200428}, {23.37, 34.88, 55.30}},
     {"cone, full angle, corner",
      RegionShape::cone,
-     AngleReading::full_angle,
+     {2.6, 8.5},
      {0, 0},
      {31606, 274269, 7988525},
      {43.49, 74.62, 161.07}},
@@ -96,9 +86,9 @@ TEST(SamplingMapPaper, CountsAndRatiosAreExact) {
     SCOPED_TRACE(c.name);
     for (std::size_t i = 0; i < kPaperRates.size(); ++i) {
       FoveationSettings settings;
-      settings.shape = c.shape;
-      settings.reading = c.reading;
-      settings.region_samples = kPaperRates[i];
+      std::get<RegionSampling>(settings.sampling).shape = c.shape;
+      std::get<RegionSampling>(settings.sampling).eccentricities_deg = c.eccentricities_deg;
+      std::get<RegionSampling>(settings.sampling).samples = kPaperRates[i];
       const SamplingMap map = make_sampling_map(settings, view, view.direction(c.gaze_px.x, c.gaze_px.y));
       ASSERT_EQ(map.regions.size(), 3U);
       std::array<std::uint64_t, 3> counted{};
@@ -124,9 +114,9 @@ TEST(SamplingMapPaper, SamplesPerPixelReading) {
   const std::array<double, 3> printed{3.62, 7.02, 23.93};
   for (std::size_t i = 0; i < kPaperRates.size(); ++i) {
     FoveationSettings settings;
-    settings.shape = RegionShape::disc;
-    settings.unit = SampleUnit::per_pixel;
-    settings.region_samples = kPaperRates[i];
+    std::get<RegionSampling>(settings.sampling).shape = RegionShape::disc;
+    std::get<RegionSampling>(settings.sampling).unit = SampleUnit::per_pixel;
+    std::get<RegionSampling>(settings.sampling).samples = kPaperRates[i];
     const SamplingMap map = make_sampling_map(settings, view, view.direction(1920, 1080));
     EXPECT_DOUBLE_EQ(to_two_digits(nominal_ratio(map)), printed[i]);
     for (const MapRegion& region : map.regions) {
@@ -137,12 +127,12 @@ TEST(SamplingMapPaper, SamplesPerPixelReading) {
 
 TEST(SamplingMap, WithoutGazeEveryPixelGetsTheUniformRate) {
   FoveationSettings settings;
-  settings.uniform_spp = 5;
+  settings.spp = 5;
   const PlanarView view = view_of_perspective(1.0, 130, 70);
-  for (const bool by_falloff : {false, true}) {
-    settings.falloff = by_falloff ? "uniform" : "regions";
+  for (const bool by_sampling : {false, true}) {
+    settings.sampling = parse_sampling(by_sampling ? "uniform" : "regions");
     const SamplingMap map =
-        make_sampling_map(settings, view, by_falloff ? std::optional<Vec3d>({0, 0, -1}) : std::nullopt);
+        make_sampling_map(settings, view, by_sampling ? std::optional<Vec3d>({0, 0, -1}) : std::nullopt);
     ASSERT_EQ(map.regions.size(), 1U);
     EXPECT_EQ(map.regions[0].name, "uniform");
     EXPECT_EQ(map.regions[0].block_px, 1);
@@ -232,13 +222,12 @@ TEST(SamplingMap, SitesOfATileFollowAZCurve) {
 TEST(SamplingMap, GazeBehindTheEye) {
   const PlanarView view = view_of_perspective(1.0, 40, 30);
   FoveationSettings settings;
-  settings.region_angles_deg = {10, 200};  // ends at 100 deg: a cone reaches past the side
   for (const Vec3d gaze : {Vec3d{0, 0, 1}, Vec3d{1, 0, 0}, Vec3d{0, 2, 1e-9}}) {
-    settings.shape = RegionShape::disc;
-    settings.region_angles_deg = {10, 170};
+    std::get<RegionSampling>(settings.sampling).shape = RegionShape::disc;
+    std::get<RegionSampling>(settings.sampling).eccentricities_deg = {5, 85};
     EXPECT_EQ(make_sampling_map(settings, view, gaze).regions[2].pixels, 1200U);
-    settings.shape = RegionShape::cone;
-    settings.region_angles_deg = {10, 200};
+    std::get<RegionSampling>(settings.sampling).shape = RegionShape::cone;
+    std::get<RegionSampling>(settings.sampling).eccentricities_deg = {5, 100};  // a cone reaches past the side
     const SamplingMap map = make_sampling_map(settings, view, gaze);
     for (int y = 0; y < 30; ++y) {
       for (int x = 0; x < 40; ++x) {
@@ -253,8 +242,8 @@ TEST(SamplingMap, BordersBelongToTheInnerRegion) {
   const PlanarView view = view_of_perspective(1.0, 41, 31);
   FoveationSettings settings;
   for (const RegionShape shape : {RegionShape::cone, RegionShape::disc}) {
-    settings.shape = shape;
-    settings.region_angles_deg = {0, 0};
+    std::get<RegionSampling>(settings.sampling).shape = shape;
+    std::get<RegionSampling>(settings.sampling).eccentricities_deg = {0, 0};
     const SamplingMap both = make_sampling_map(settings, view, view.direction(7.5, 20.5));
     EXPECT_EQ(both.region(7, 20), 0);
     EXPECT_EQ(both.regions[0].pixels, 1U);
@@ -262,8 +251,8 @@ TEST(SamplingMap, BordersBelongToTheInnerRegion) {
     EXPECT_EQ(both.regions[2].pixels, 41U * 31U - 1);
   }
   // The whole sphere: 180 degrees are inside.
-  settings.shape = RegionShape::cone;
-  settings.region_angles_deg = {0, 360};
+  std::get<RegionSampling>(settings.sampling).shape = RegionShape::cone;
+  std::get<RegionSampling>(settings.sampling).eccentricities_deg = {0, 180};
   EXPECT_EQ(make_sampling_map(settings, view, -view.direction(7.5, 20.5)).regions[1].pixels, 41U * 31U);
 }
 
@@ -291,30 +280,63 @@ TEST(CheckFoveation, NamesTheFieldAndWhatIsAllowed) {
   using testing::HasSubstr;
   EXPECT_EQ(refusal({}), "");
   FoveationSettings s;
-  s.falloff = "regoins";
-  EXPECT_THAT(refusal(s), HasSubstr("did you mean 'regions'"));
+  s.spp = 0;
+  EXPECT_THAT(refusal(s), testing::AllOf(HasSubstr("`spp`"), HasSubstr("up to 1000000")));
   s = {};
-  s.uniform_spp = 0;
-  EXPECT_THAT(refusal(s), testing::AllOf(HasSubstr("`spp`"), HasSubstr("1 to 1000000")));
-  s = {};
-  s.region_samples = {32, 0, 8};
+  std::get<RegionSampling>(s.sampling).samples = {32, 0, 8};
   EXPECT_THAT(refusal(s), HasSubstr("`region-samples`"));
   s = {};
-  s.region_blocks_px = {2, 65};
+  std::get<RegionSampling>(s.sampling).blocks_px = {2, 65};
   EXPECT_THAT(refusal(s), testing::AllOf(HasSubstr("`region-blocks`"), HasSubstr("1 to 64")));
-  s.region_blocks_px = {0, 4};
+  std::get<RegionSampling>(s.sampling).blocks_px = {0, 4};
   EXPECT_THAT(refusal(s), HasSubstr("`region-blocks`"));
   s = {};
-  s.region_angles_deg = {17, 5.2};
-  EXPECT_THAT(refusal(s), testing::AllOf(HasSubstr("`region-angles`"), HasSubstr("smaller angle first")));
-  s.region_angles_deg = {-1, 5};
-  EXPECT_THAT(refusal(s), HasSubstr("`region-angles`"));
-  s.region_angles_deg = {5, std::numeric_limits<double>::quiet_NaN()};
-  EXPECT_THAT(refusal(s), HasSubstr("`region-angles`"));
-  s.region_angles_deg = {5, 180};
+  std::get<RegionSampling>(s.sampling).eccentricities_deg = {17, 5.2};
+  EXPECT_THAT(refusal(s), testing::AllOf(HasSubstr("`region-eccentricities`"), HasSubstr("smaller angle first")));
+  std::get<RegionSampling>(s.sampling).eccentricities_deg = {-1, 5};
+  EXPECT_THAT(refusal(s), HasSubstr("`region-eccentricities`"));
+  std::get<RegionSampling>(s.sampling).eccentricities_deg = {5, std::numeric_limits<double>::quiet_NaN()};
+  EXPECT_THAT(refusal(s), HasSubstr("`region-eccentricities`"));
+  std::get<RegionSampling>(s.sampling).eccentricities_deg = {5, 180};
   EXPECT_EQ(refusal(s), "");
-  s.shape = RegionShape::disc;  // tan(a/2)
+  std::get<RegionSampling>(s.sampling).shape = RegionShape::disc_by_radius;  // tan(a/2)
   EXPECT_THAT(refusal(s), HasSubstr("0 to below 180"));
+  std::get<RegionSampling>(s.sampling).shape = RegionShape::disc;
+  EXPECT_THAT(refusal(s), HasSubstr("0 to below 90"));
+}
+
+TEST(SamplingText, IsReadBackAsItWas) {
+  for (const SamplingTraits& traits : samplings()) {
+    EXPECT_EQ(to_string(parse_sampling(traits.name)), traits.name);
+  }
+  EXPECT_EQ(to_string(parse_sampling("regions:unit=pixel,shape=disc")), "regions:shape=disc,unit=pixel");
+  EXPECT_EQ(to_string(parse_sampling("regions:shape=cone,unit=block")), "regions");
+  for (const auto& [text, words] :
+       {std::pair("regoins", "did you mean 'regions'"), std::pair("uniform:unit=pixel", "unknown parameter 'unit'"),
+        std::pair("regions:unit=inch", "block, pixel"), std::pair("regions:unit", "no value")}) {
+    try {
+      parse_sampling(text);
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      EXPECT_THAT(std::string(error.what()), testing::HasSubstr(words));
+    }
+  }
+}
+
+// The mean is met whatever the sampling, and where the samples go stays: rates are in the same proportion.
+TEST(SamplingMap, RegionsAreScaledToTheMeanThatIsAskedFor) {
+  const PlanarView view = view_of_display(display_by_name("paper"), {}, 480, 270);
+  const Vec3d gaze = view.direction(200, 100);
+  const SamplingMap own = make_sampling_map({}, view, gaze);
+  FoveationSettings settings;
+  settings.spp = 0.75;
+  const SamplingMap scaled = make_sampling_map(settings, view, gaze);
+  EXPECT_NEAR(static_cast<double>(scaled.samples()), 0.75 * 480 * 270, 1.01);
+  const double scale = 0.75 * 480 * 270 / static_cast<double>(own.samples());
+  ASSERT_EQ(scaled.sites.size(), own.sites.size());
+  for (std::size_t i = 0; i < own.sites.size(); ++i) {
+    ASSERT_NEAR(scaled.expected(i), scale * own.sites[i].samples, 1e-5);
+  }
 }
 
 TEST(SamplingMap, RefusesWhatIsNoGazeOrNoFrame) {

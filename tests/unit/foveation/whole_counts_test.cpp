@@ -16,7 +16,7 @@ namespace {
 
 FoveationSettings geisler_perry() {
   FoveationSettings settings;
-  settings.falloff = "geisler-perry";
+  settings.sampling = parse_density("geisler-perry");
   return settings;
 }
 
@@ -80,7 +80,7 @@ TEST(WholeCounts, DependOnSeedAndFrameAlone) {
 TEST(WholeCounts, HalfASampleMakesNoStripes) {
   const PlanarView view = view_of_perspective(1.0, 128, 128);
   FoveationSettings settings;
-  settings.budget_spp = 0.5;
+  settings.spp = 0.5;
   MapContext context;
   context.seed = 9;
   const ImageGray counts = samples_per_pixel(make_sampling_map(settings, view, std::nullopt, context));

@@ -240,7 +240,7 @@ TEST_F(Resolve, AFallOffThatSavesNothingIsTold) {
   set_option(job, "screen-px", "1920,1080");
   set_option(job, "screen-cm", "60,33.75");
   set_option(job, "screen-distance-cm", "60");
-  set_option(job, "falloff", "geisler-perry");
+  set_option(job, "density", "geisler-perry");
   set_option(job, "size", "160x90");
   ResolveOptions plan;
   plan.scope = ResolveScope::plan;
@@ -249,7 +249,7 @@ TEST_F(Resolve, AFallOffThatSavesNothingIsTold) {
   set_option(job, "size", "1920x1080");
   EXPECT_THAT(resolve(job, plan).warnings, Not(testing::Contains(HasSubstr("saves only"))));
   set_option(job, "size", "160x90");
-  set_option(job, "falloff-normalisation", "relative");
+  set_option(job, "density", "geisler-perry:relative-to=fovea");
   EXPECT_THAT(resolve(job, plan).warnings, Not(testing::Contains(HasSubstr("saves only"))));
 }
 

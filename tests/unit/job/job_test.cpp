@@ -42,8 +42,8 @@ TEST(Job, CopiesAreIndependent) {
   set_option(first, "spp", "4");
   Job second = first;
   set_option(second, "spp", "8");
-  EXPECT_EQ(first.settings.foveation.uniform_spp, 4U);
-  EXPECT_EQ(second.settings.foveation.uniform_spp, 8U);
+  EXPECT_EQ(first.settings.foveation.spp, 4U);
+  EXPECT_EQ(second.settings.foveation.spp, 8U);
   EXPECT_EQ(option_text(first, "spp"), "4");
 }
 
@@ -52,7 +52,7 @@ TEST(Job, TextGivesTheSameJobBack) {
   set_option(job, "scene", "a \"b\" #c.gltf");
   set_option(job, "output", std::vector<std::string>{"f.####.exr", "f.####.png"});
   set_option(job, "gaze-start", "12345678901234567ns");
-  set_option(job, "region-angles", "5.2,17");
+  set_option(job, "region-eccentricities", "2.5,7.25");
   set_option(job, "seed", "18446744073709551615");
   const std::string text = job_as_toml(job);
   const Job back = job_from_toml(text, "job.toml");
@@ -82,7 +82,7 @@ TEST(Job, TheCommandLineIsAboveAFileInWhateverOrder) {
   add_toml(second, "# one\nspp = 7\nbounces = 5\n", "job.toml");
   on_command_line(second, "spp", "3");
   EXPECT_EQ(job_as_toml(first), job_as_toml(second));
-  EXPECT_EQ(first.settings.foveation.uniform_spp, 3U);
+  EXPECT_EQ(first.settings.foveation.spp, 3U);
   EXPECT_EQ(first.settings.trace.max_bounces, 5);
   const std::vector<std::string> replaced{"the command line replaces spp = 7 of job.toml:2"};
   EXPECT_EQ(decisions_of(first), replaced);
@@ -112,8 +112,8 @@ TEST(Job, OrderOfPrecedence) {
     EXPECT_EQ(option_text(job, "spp"), "1024");  // the preset of the command line above the file
     EXPECT_EQ(origin("spp"), Origin::preset);
     EXPECT_EQ(option_text(job, "filter"), "none");
-    EXPECT_EQ(option_text(job, "region-shape"), "disc");  // the file's preset above the default
-    EXPECT_EQ(origin("region-shape"), Origin::preset_of_file);
+    EXPECT_EQ(option_text(job, "view"), "Reinhard");  // the file's preset above the default
+    EXPECT_EQ(origin("view"), Origin::preset_of_file);
     EXPECT_FALSE(job.sources.contains("seed"));
     EXPECT_EQ(option_text(job, "preset"), "reference");
     EXPECT_THAT(decisions_of(job),
@@ -128,7 +128,7 @@ TEST(Job, AFileIsAboveItsPreset) {
     const Job job = job_from_toml(text, "job.toml");
     EXPECT_EQ(job.settings.trace.max_bounces, 5);
     EXPECT_TRUE(job.is_given("bounces"));
-    EXPECT_FALSE(job.is_given("region-shape"));
+    EXPECT_FALSE(job.is_given("region-samples"));
   }
 }
 

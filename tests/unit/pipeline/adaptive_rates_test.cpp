@@ -105,10 +105,10 @@ TEST(PilotBudget, MustLeaveMoreThanThePilot) {
   request.width_px = 64;
   request.height_px = 40;
   FoveationSettings settings;
-  settings.falloff = "visible";
-  settings.budget_spp = 1.25 * least_pilot_spp(request);
+  settings.sampling = AdaptiveSampling{};
+  settings.spp = 1.25 * least_pilot_spp(request);
   EXPECT_NO_THROW(check_pilot_budget(settings, request));
-  settings.budget_spp = 0.95 * least_pilot_spp(request);
+  settings.spp = 0.95 * least_pilot_spp(request);
   EXPECT_THROW(check_pilot_budget(settings, request), Error);
 }
 

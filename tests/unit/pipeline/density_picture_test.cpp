@@ -31,7 +31,7 @@ constexpr int kWidth = 190, kHeight = 101;
 
 FoveationSettings by_picture() {
   FoveationSettings settings;
-  settings.falloff = "map";
+  settings.sampling = density_of_picture();
   return settings;
 }
 
@@ -115,7 +115,7 @@ TEST(DensityPicture, WholeRatesAreExactAndSparseOnesBecomeBlocks) {
 TEST(DensityPicture, AnySizeIsStretchedOverTheFrame) {
   ImageGray density(2, 1);
   density.pixels = {4, 1};
-  const ImageGray rates = *falloff_density(by_picture(), view(), {0, 0, -1}, follow(density));
+  const ImageGray rates = *density_image(by_picture(), view(), {0, 0, -1}, follow(density));
   EXPECT_EQ(rates(20, 50), 1.0F);    // left of the first texel's centre
   EXPECT_EQ(rates(180, 50), 0.25F);  // right of the second's
   EXPECT_EQ(rates(95, 50), rates(95, 5));
@@ -130,7 +130,7 @@ TEST(DensityPicture, OnABudgetOnlyProportionsCount) {
     value *= 0x1p-30F;
   }
   FoveationSettings settings = by_picture();
-  settings.budget_spp = 1.5;
+  settings.spp = 1.5;
   const SamplingMap map = map_of(density, settings);
   expect_consistent(map);
   EXPECT_NEAR(static_cast<double>(map.samples()), 1.5 * kWidth * kHeight, 1.01);
@@ -174,10 +174,10 @@ void write_exr(const std::string& path, const ImageGray& image, const char* chan
 }
 
 std::string said(const std::string& file, std::int32_t frame = 1) {
-  FoveationSettings settings = by_picture();
-  settings.density_map = file;
+  FoveationSettings settings;
+  settings.sampling = parse_density(file);
   try {
-    read_density_map(settings, frame);
+    read_density_picture(settings, frame);
   } catch (const Error& error) {
     return error.what();
   }
@@ -232,19 +232,19 @@ TEST(DensityPicture, SizesThatFilesOnlyClaimAreRefusedBeforeThereIsMemoryForThem
 
 TEST(DensityPicture, APatternHasOneFileForEachFrame) {
   const TemporaryFolder folder;
-  FoveationSettings settings = by_picture();
-  settings.density_map = folder.path() + "/d.####.exr";
+  FoveationSettings settings;
+  settings.sampling = parse_density(folder.path() + "/d.####.exr");
   write_exr(folder.path() + "/d.0002.exr", ImageGray(1, 1, 2), "R");
   write_exr(folder.path() + "/d.0010.exr", ImageGray(1, 1, 10), "R");
-  EXPECT_EQ(read_density_map(settings, 10)(0, 0), 10.0F);
-  EXPECT_EQ(density_map_files(settings),
+  EXPECT_EQ(read_density_picture(settings, 10)(0, 0), 10.0F);
+  EXPECT_EQ(density_picture_files(settings),
             (std::vector<std::string>{folder.path() + "/d.0002.exr", folder.path() + "/d.0010.exr"}));
-  EXPECT_NE(said(settings.density_map, 3).find("d.0003.exr"), std::string::npos);
+  EXPECT_NE(said(folder.path() + "/d.####.exr", 3).find("d.0003.exr"), std::string::npos);
 }
 
 TEST(DensityPicture, ModelsThatFollowAPictureNeedOne) {
   EXPECT_THROW(make_sampling_map(by_picture(), view(), std::nullopt), Error);
-  EXPECT_THROW(falloff_density(by_picture(), view(), {0, 0, -1}), Error);
+  EXPECT_THROW(density_image(by_picture(), view(), {0, 0, -1}), Error);
 }
 
 }  // namespace

@@ -24,9 +24,9 @@ int block_at(const SamplingMap& map, int x, int y) {
 }
 
 TEST(WindowBlocks, AreThoseOfTheFrame) {
-  for (const char* falloff : {"map", "visible"}) {
+  for (const Sampling& sampling : {Sampling(density_of_picture()), Sampling(AdaptiveSampling{})}) {
     FoveationSettings settings;
-    settings.falloff = falloff;
+    settings.sampling = sampling;
     // From 64 samples a pixel on the left to a sixteenth on the right.
     ImageGray rates(kSide, kSide);
     for (int y = 0; y < kSide; ++y) {
@@ -52,7 +52,7 @@ TEST(WindowBlocks, AreThoseOfTheFrame) {
     EXPECT_GT(block_at(frame, kSide - 1, kY), 1);
     // Where blocks just have as many samples as they must, the mean of one may be beneath that: a column of eight
     // pixels.
-    EXPECT_GE(alike, (kWindow - 8) * kWindow) << falloff;
+    EXPECT_GE(alike, (kWindow - 8) * kWindow) << to_string(sampling);
   }
 }
 

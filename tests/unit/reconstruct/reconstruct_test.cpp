@@ -339,8 +339,8 @@ std::vector<SamplingMap> many_maps() {
   for (int i = 0; i < 60; ++i) {
     FoveationSettings settings;
     const double inner = real(0, 40);
-    settings.region_angles_deg = {inner, inner + real(0, 40)};
-    settings.region_blocks_px = {pick(1, 9), pick(0, 4) == 0 ? 64 : pick(1, 12)};
+    std::get<RegionSampling>(settings.sampling).eccentricities_deg = {inner / 2, (inner + real(0, 40)) / 2};
+    std::get<RegionSampling>(settings.sampling).blocks_px = {pick(1, 9), pick(0, 4) == 0 ? 64 : pick(1, 12)};
     const PlanarView view = view_of_perspective(1.0, pick(1, 140), pick(1, 100));
     maps.push_back(make_sampling_map(
         settings, view, view.direction(real(-0.2, 1.2) * view.width_px, real(-0.2, 1.2) * view.height_px)));
@@ -402,7 +402,7 @@ TEST(ReconstructLinear, RampsStayStraightAcrossBorders) {
   int checked = 0;
   for (const bool odd : {false, true}) {
     FoveationSettings settings;
-    settings.region_angles_deg = {20, 40};
+    std::get<RegionSampling>(settings.sampling).eccentricities_deg = {10, 20};
     const PlanarView view = view_of_perspective(1.0, odd ? 143 : 144, odd ? 93 : 96);
     const SamplingMap map = make_sampling_map(settings, view, view.direction(63.3, 41.8));
     const Frame frame = reconstruct(sample(map, ramp), map, "linear", 1);

@@ -46,7 +46,7 @@ ResultRow row_with_everything() {
   row.curve = "0123abcd";
   row.wrong = "mirrored";
   row.baselines = {{"equal-samples", "box-left-1-samples"}};
-  row.settings = {{"falloff", "uniform"}, {"spp", "3.1"}};
+  row.settings = {{"sampling", "uniform"}, {"spp", "3.1"}};
   row.resolution_scale = 0.5;
   row.reference = "box-a";
   row.time_s = Interval{0.1, 0.09, 0.11};
@@ -93,7 +93,7 @@ Results results_with_everything() {
   results.viewing.model_gain_cut_4_cpd = 1.875;
   results.view = "ACES SDR";
   results.common_settings = {{"filter", "linear"}, {"bounces", "3"}};
-  results.varied = {"falloff", "spp"};
+  results.varied = {"sampling", "spp"};
   results.repeats = 2;
   results.bands_deg = {0, 2.6, 60};
   results.regions_deg = {2.6, 8.5};

@@ -76,7 +76,7 @@ TEST(SweepFrames, WithoutFixationsAllWithGazeAreScoredAndWithoutGazeAll) {
 
 TEST(SweepFrames, RingsAreWhereTheAnglesAreInTheMiddle) {
   FoveationSettings foveation;
-  foveation.region_angles_deg = {10, 30};
+  std::get<RegionSampling>(foveation.sampling).eccentricities_deg = {5, 15};
   // A pixel is a centimetre at 50 cm: tan(5 deg) * 50 and tan(15 deg) * 50 pixels.
   const std::vector<ResultFrame> frames = sweep_frames(plan_of(1), foveation, 0);
   ASSERT_EQ(frames[0].rings_px.size(), 2U);
@@ -129,7 +129,7 @@ TEST(SweepRows, RatesThatFollowAPictureHaveBaselinesWithoutGaze) {
   SweepTest test;
   test.plan = plan_of(1);
   test.plan.frames[0].gaze_direction_render.reset();
-  test.pipeline.foveation.falloff = "visible";
+  test.pipeline.foveation.sampling = AdaptiveSampling{};
   plan.tests = {test};
   plan.measure.baselines.reference_rate = true;
   plan.measure.baselines.wrong_gaze = true;
@@ -138,7 +138,7 @@ TEST(SweepRows, RatesThatFollowAPictureHaveBaselinesWithoutGaze) {
   ASSERT_EQ(rows.size(), 1U);  // there is no gaze that could be wrong
   EXPECT_EQ(rows[0].row.role, RowRole::uniform_reference_rate);
   EXPECT_TRUE(notes.empty());
-  plan.tests[0].pipeline.foveation.falloff = "regions";
+  plan.tests[0].pipeline.foveation.sampling = RegionSampling{};
   EXPECT_TRUE(baselines_known_before(plan, test_row(plan, 0), notes).empty());
 }
 

@@ -77,7 +77,7 @@ std::unique_ptr<Planned> planned(const std::vector<Scene>& scenes) {
   for (const std::size_t of : {std::size_t{0}, std::size_t{0}, std::size_t{1}}) {
     SweepReference reference = reference_of(3);
     reference.scene = of;
-    reference.pipeline.foveation.uniform_spp = 16;
+    reference.pipeline.foveation.spp = 16;
     reference.seeds = {1, 2, 3, 4};
     for (FrameRequest& request : reference.plan.frames) {
       request.width_px = 8;

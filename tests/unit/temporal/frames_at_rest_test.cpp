@@ -18,8 +18,8 @@ constexpr int kSide = 64;
 
 SamplingMap map_of(double spp, std::int32_t frame = 1) {
   FoveationSettings settings;
-  settings.falloff = "uniform";
-  settings.budget_spp = spp;
+  settings.sampling = UniformSampling{};
+  settings.spp = spp;
   MapContext context;
   context.frame = frame;
   return make_sampling_map(settings, view_of_perspective(1, kSide, kSide), std::nullopt, context);
@@ -156,7 +156,7 @@ TEST(FramesAtRest, RatesMayDifferButNotBlocks) {
   EXPECT_TRUE(same_sites(map_of(0.4, 1), map_of(0.4, 2)));
   EXPECT_TRUE(same_sites(map_of(2), map_of(7)));
   FoveationSettings settings;
-  settings.falloff = "regions";
+  settings.sampling = RegionSampling{};
   const PlanarView view = view_of_perspective(1, kSide, kSide);
   const auto looking_at = [&](double x) { return make_sampling_map(settings, view, view.direction(x, 30)); };
   EXPECT_TRUE(same_sites(looking_at(30), looking_at(30)));

@@ -5,15 +5,15 @@
 //   intermediate  e_f < e <= e_i  tau2 samples per block of n x n pixels
 //   periphery     e_i < e         tau3 samples per block of m x m pixels
 //
-// cone: e is the angle at the eye between gaze and pixel centre, by atan2, and ends at a/2 (full_angle) or a
-// (eccentricity). disc: pixels whose centre is within r of the gaze point, with eq. (1) of the paper,
-// 2 d R tan(a/2) / S, taken as the diameter (full_angle) or the radius (eccentricity). Borders are inclusive.
+// cone: e is the angle at the eye between gaze and pixel centre, by atan2. disc: pixels whose centre is within r of the
+// gaze point, with eq. (1) of the paper, 2 d R tan(a/2) / S, taken as the diameter for a = 2 e (disc) or as the radius
+// for a = e (disc_by_radius). Borders are inclusive.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 
-#include "foveation/falloff.hpp"
+#include "foveation/model.hpp"
 
 namespace gazetrace {
 namespace {
@@ -84,26 +84,28 @@ void fill_disc(Image<std::uint8_t>& region, const std::array<double, 2>& radii_p
   }
 }
 
+// Eq. (1) on the plane at distance 1.
+double disc_radius(RegionShape shape, double eccentricity_deg) {
+  const double e = eccentricity_deg * kRadPerDeg;
+  return shape == RegionShape::disc ? std::tan(e) : 2 * std::tan(0.5 * e);
+}
+
 }  // namespace
 
-Falloff falloff_regions(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction) {
+Layout region_layout(const RegionSampling& regions, const PlanarView& view, const Vec3d& gaze_direction) {
   Layout layout;
-  layout.regions = {{"fovea", 1, settings.region_samples[0], settings.unit},
-                    {"intermediate", settings.region_blocks_px[0], settings.region_samples[1], settings.unit},
-                    {"periphery", settings.region_blocks_px[1], settings.region_samples[2], settings.unit}};
+  layout.regions = {{"fovea", 1, regions.samples[0], regions.unit},
+                    {"intermediate", regions.blocks_px[0], regions.samples[1], regions.unit},
+                    {"periphery", regions.blocks_px[1], regions.samples[2], regions.unit}};
   layout.region = Image<std::uint8_t>(view.width_px, view.height_px, 2);
-
-  const double part = eccentricity_share(settings.reading);
-  std::array<double, 2> limits{};
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    const double angle_deg = settings.region_angles_deg[i];
-    limits[i] = settings.shape == RegionShape::cone ? part * angle_deg
-                                                    : part * 2.0 * std::tan(0.5 * angle_deg * kRadPerDeg) / view.step_x;
-  }
-  if (settings.shape == RegionShape::cone) {
-    fill_cone(layout.region, limits, view, gaze_direction);
+  if (regions.shape == RegionShape::cone) {
+    fill_cone(layout.region, regions.eccentricities_deg, view, gaze_direction);
   } else {
-    fill_disc(layout.region, limits, view, gaze_direction);
+    std::array<double, 2> radii_px{};
+    for (std::size_t i = 0; i < radii_px.size(); ++i) {
+      radii_px[i] = disc_radius(regions.shape, regions.eccentricities_deg[i]) / view.step_x;
+    }
+    fill_disc(layout.region, radii_px, view, gaze_direction);
   }
   return layout;
 }

@@ -10,13 +10,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "foveation/falloff.hpp"
+#include "foveation/densities.hpp"
 
 namespace gazetrace {
 
-Falloff falloff_log_polar(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction) {
-  const double sigma = settings.parameters.log_polar_sigma;
-  const double alpha = settings.parameters.log_polar_alpha;
+DensityModel log_polar_model(double sigma, double alpha, const PlanarView& view, const Vec3d& gaze_direction) {
   const double buffer_px = static_cast<double>(view.width_px) * view.height_px / (sigma * sigma);
   const Vec2d gaze_px = view.pixel(gaze_direction);
   const double far_x = std::max(gaze_px.x, view.width_px - gaze_px.x);
@@ -26,7 +24,7 @@ Falloff falloff_log_polar(const FoveationSettings& settings, const PlanarView& v
   DensityModel model;
   model.quantity = DensityModel::Quantity::density;
   model.uses_radius = true;
-  model.value = [=](const FalloffPlace& place) {
+  model.value = [=](const DensityPlace& place) {
     if (!std::isfinite(place.radius_px) || !std::isfinite(log_farthest)) {
       return 0.0;  // the gaze never meets the plane
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "foveation/falloff_table.hpp"
+#include "foveation/density_curve.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "gazetrace/density.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/foveation.hpp"
 
 namespace gazetrace {
 
@@ -52,7 +52,7 @@ double MonotoneCubic::operator()(double x) const {
          h * t * u * (slopes_[i] * u - slopes_[i + 1] * t);
 }
 
-FalloffTable load_falloff_table(const std::string& path) {
+DensityCurve load_density_curve(const std::string& path) {
   const std::string text = read_text_file(path);
   LineReader lines(text);
   std::vector<Vec2d> points;

@@ -17,7 +17,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "foveation/falloff.hpp"
+#include "foveation/densities.hpp"
 
 namespace gazetrace {
 namespace {
@@ -108,18 +108,17 @@ class CutoffTable {
 
 }  // namespace
 
-Falloff falloff_csf(const FoveationSettings& settings, const PlanarView& /*view*/, const Vec3d& /*gaze_direction*/) {
-  const auto table =
-      std::make_shared<const CutoffTable>(settings.parameters.contrast, settings.parameters.luminance_cd_m2);
+DensityModel csf_model(double contrast, double luminance_cd_m2, FieldOf eye) {
+  const auto table = std::make_shared<const CutoffTable>(contrast, luminance_cd_m2);
   DensityModel model;
   model.uses_meridian = true;
-  model.value = [table, eye = settings.parameters.eye](const FalloffPlace& place) {
+  model.value = [table, eye](const DensityPlace& place) {
     // The right eye's nasal side is on the left, at pi.
     const double from_left = std::atan2(std::abs(place.meridian.y), -place.meridian.x);
     const double from_right = kPi - from_left;
-    const double from_nasal = eye == FalloffEye::right  ? from_left
-                              : eye == FalloffEye::left ? from_right
-                                                        : std::min(from_left, from_right);
+    const double from_nasal = eye == FieldOf::right  ? from_left
+                              : eye == FieldOf::left ? from_right
+                                                     : std::min(from_left, from_right);
     return table->cutoff_cpd(place.eccentricity_deg, std::min(1.0, from_nasal / (0.5 * kPi)));
   };
   return model;

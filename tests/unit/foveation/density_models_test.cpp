@@ -1,39 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each fall-off model against published or independently computed values: cut-off frequencies, what it leaves of a
+// Each density against published or independently computed values: cut-off frequencies, what it leaves of a
 // full-rate frame, Jacobians by finite differences of the mappings, and the extremes that must not break one.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "foveation/acuity_curve.hpp"
+#include "foveation/density_curve.hpp"
 #include "foveation/density_field.hpp"
-#include "foveation/falloff_table.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/foveation.hpp"
+#include "support/sampling_models.hpp"
 
 namespace gazetrace {
 namespace {
 
-FoveationSettings model(const std::string& name) {
-  FoveationSettings settings;
-  settings.falloff = name;
-  settings.parameters.table = {"", {{0, 1}, {5, 0.5}, {20, 0.1}, {60, 0.02}}};
-  return settings;
-}
-
-std::vector<std::string> density_models() {
-  std::vector<std::string> names;
-  for (const FalloffInfo& info : falloffs()) {
-    if (info.name != "uniform" && info.name != "regions" && !info.from_picture) {
-      names.push_back(info.name);
-    }
-  }
-  return names;
+std::optional<double> cutoff_of(const FoveationSettings& settings, double e, double meridian_deg = 0) {
+  return cutoff_cpd(std::get<DensitySampling>(settings.sampling), e, meridian_deg);
 }
 
 struct CutoffCase {
@@ -51,23 +41,20 @@ constexpr CutoffCase kCutoffs[] = {
     {"retina", 0, {65.37, 19.61, 12.31, 8.87, 7.97, 5.58, 4.95, 3.51, 2.59, 1.49}},
 };
 
-TEST(FalloffCutoff, AsPublished) {
+TEST(DensityCutoff, AsPublished) {
   for (const CutoffCase& c : kCutoffs) {
     SCOPED_TRACE(c.name);
-    FoveationSettings settings = model(c.name);
-    if (c.scale > 0) {
-      settings.parameters.mar_slope = c.scale;
-    }
+    const FoveationSettings settings = model(c.scale > 0 ? fmt::format("{}:slope={}", c.name, c.scale) : c.name);
     for (std::size_t i = 0; i < kAngles.size(); ++i) {
       // Printed with two digits; the meridian 0 of either eye together is temporal.
-      EXPECT_NEAR(*falloff_cutoff_cpd(settings, kAngles[i]), c.cpd[i], 0.00501) << kAngles[i];
+      EXPECT_NEAR(*cutoff_of(settings, kAngles[i]), c.cpd[i], 0.00501) << kAngles[i];
     }
   }
 }
 
 // The share of full-rate samples on the source paper's display and on a head-mounted display of 110 x 110 degrees, gaze
 // at the centre, in per cent, from a separate computation with the solid angle of each pixel.
-TEST(FalloffDensity, SharesOfAFullRateFrame) {
+TEST(Density, SharesOfAFullRateFrame) {
   struct Share {
     const char* name;
     double display, head_mounted;
@@ -82,16 +69,17 @@ TEST(FalloffDensity, SharesOfAFullRateFrame) {
   for (const Share& share : kShares) {
     for (const PlanarView* view : {&display, &head_mounted}) {
       FoveationSettings settings = model(share.name);
-      settings.density_floor = 1e-12;
+      density_of(settings).least_density = 1e-12;
       // The published figure is of the temporal meridian in every direction.
       const bool isotropic = std::string(share.name) == "retina";
       DensityModel curve;
       if (isotropic) {
-        curve = isotropic_cutoff([settings](double e) { return *falloff_cutoff_cpd(settings, e); });
+        curve.value = [settings](const DensityPlace& place) { return *cutoff_of(settings, place.eccentricity_deg); };
+        curve.floor = 1e-12;
       } else {
-        curve = std::get<DensityModel>(make_falloff(settings, *view, {0, 0, -1}));
+        curve = std::get<DensityModel>(sampling_model(settings, *view, {0, 0, -1}));
       }
-      const DensityField field(settings, *view, {0, 0, -1}, {}, curve);
+      const DensityField field(*view, {0, 0, -1}, {}, curve);
       double sum = 0;
       int count = 0;
       const int stride = isotropic ? 12 : 4;
@@ -108,40 +96,36 @@ TEST(FalloffDensity, SharesOfAFullRateFrame) {
   }
 }
 
-TEST(FalloffDensity, RelativeIsTheSquareOfTheCutoffs) {
+TEST(Density, RelativeIsTheSquareOfTheCutoffs) {
   const PlanarView view = view_of_perspective(1.2, 96, 64);
   const Vec3d gaze = view.direction(30, 20);
   for (const std::string& name : density_models()) {
-    FoveationSettings settings = model(name);
-    if (!falloff_cutoff_cpd(settings, 0)) {
+    if (!cutoff_of(model(name), 0)) {
       continue;
     }
-    settings.parameters.normalization = FalloffNormalization::relative;
-    settings.parameters.eye = FalloffEye::both;
-    settings.density_floor = 1e-9;
-    const ImageGray density = *falloff_density(settings, view, gaze);
+    FoveationSettings settings = model(name + ":relative-to=fovea");
+    density_of(settings).least_density = 1e-9;
+    const ImageGray density = *density_image(settings, view, gaze);
     for (const int x : {31, 50, 90}) {
       const Vec3d direction = view.direction(x + 0.5, 20.5);
       const double e = eccentricity_deg(view, gaze, x + 0.5, 20.5);
       const Vec3d right = cross(gaze, Vec3d{0, 1, 0});
       const Vec3d up = cross(right, gaze) / length(gaze);
       const double meridian = std::atan2(dot(direction, up), dot(direction, right)) * kDegPerRad;
-      const double ratio = *falloff_cutoff_cpd(settings, e, meridian) / *falloff_cutoff_cpd(settings, 0);
+      const double ratio = *cutoff_of(settings, e, meridian) / *cutoff_of(settings, 0);
       EXPECT_NEAR(density(x, 20), ratio * ratio, 1e-6) << name;
     }
   }
 }
 
 // Meng's mapping, written down plainly, and the area that a small square of the frame has in the buffer.
-TEST(FalloffDensity, LogPolarIsTheJacobianOfItsMapping) {
+TEST(Density, LogPolarIsTheJacobianOfItsMapping) {
   const PlanarView view = view_of_perspective(1.0, 400, 300);
   const Vec2d gaze{131.3, 96.7};
   for (const auto& [sigma, alpha] : {std::pair{1.8, 4.0}, {2.5, 1.0}, {1.2, 2.0}}) {
-    FoveationSettings settings = model("log-polar");
-    settings.parameters.log_polar_sigma = sigma;
-    settings.parameters.log_polar_alpha = alpha;
-    settings.density_floor = 1e-12;
-    const ImageGray density = *falloff_density(settings, view, view.direction(gaze.x, gaze.y));
+    FoveationSettings settings = model(fmt::format("log-polar:sigma={},alpha={}", sigma, alpha));
+    density_of(settings).least_density = 1e-12;
+    const ImageGray density = *density_image(settings, view, view.direction(gaze.x, gaze.y));
     const double log_farthest = std::log(std::hypot(400 - gaze.x, 300 - gaze.y));
     const auto buffer = [&, a = alpha, s = sigma](double x, double y) {
       const double radius = std::hypot(x - gaze.x, y - gaze.y);
@@ -165,9 +149,12 @@ TEST(FalloffDensity, LogPolarIsTheJacobianOfItsMapping) {
 
 // The radial axis is the integral of M, the turn in steps whose number falls with sin e inside the plateau: samples per
 // solid angle are the grid cells in a small patch of the sphere.
-TEST(FalloffDensity, VisualPolarIsTheJacobianOfItsMapping) {
+TEST(Density, VisualPolarIsTheJacobianOfItsMapping) {
   const FoveationSettings settings = model("visual-polar");
-  const auto integral_of_acuity = [](double from_deg, double to_deg) {
+  // Reddy's acuity, whose plateau the turn keeps to.
+  constexpr double kAcuityPlateauDeg = 5.79;
+  const auto relative_acuity = [](double e) { return e <= kAcuityPlateauDeg ? 1.0 : 7.49 / std::pow(0.3 * e + 1, 2); };
+  const auto integral_of_acuity = [&](double from_deg, double to_deg) {
     constexpr int kSteps = 100;
     double sum = 0;
     for (int i = 0; i < kSteps; ++i) {
@@ -184,13 +171,13 @@ TEST(FalloffDensity, VisualPolarIsTheJacobianOfItsMapping) {
   };
   const double foveal = cells_per_area(1);
   for (const double e : {0.5, 3.0, 7.0, 12.0, 25.0, 50.0, 80.0}) {
-    const double cutoff = *falloff_cutoff_cpd(settings, e) / *falloff_cutoff_cpd(settings, 0);
+    const double cutoff = *cutoff_of(settings, e) / *cutoff_of(settings, 0);
     EXPECT_NEAR(cutoff * cutoff / (cells_per_area(e) / foveal), 1, 2e-4) << e;
   }
 }
 
 // The cut-off is where sensitivity times contrast passes 1, found here by bisection of Barten's formula.
-TEST(FalloffCutoff, CsfIsWhereContrastIsJustSeen) {
+TEST(DensityCutoff, CsfIsWhereContrastIsJustSeen) {
   const auto log_sensitivity = [](double u, double luminance, double e, double k1, double k2) {
     const double numerator = 5200 * std::exp(-0.0016 * u * u * std::pow(1 + 100 / luminance, 0.08));
     const double a = 1 + 144.0 / 100 + 0.64 * u * u;
@@ -199,10 +186,8 @@ TEST(FalloffCutoff, CsfIsWhereContrastIsJustSeen) {
   };
   for (const double luminance : {1.0, 100.0, 500.0}) {
     for (const double contrast : {1.0, 0.1}) {
-      FoveationSettings settings = model("csf");
-      settings.parameters.luminance_cd_m2 = luminance;
-      settings.parameters.contrast = contrast;
-      settings.parameters.eye = FalloffEye::right;
+      const FoveationSettings settings =
+          model(fmt::format("csf:luminance={},contrast={},eye=right", luminance, contrast));
       for (const auto& [meridian, k1, k2] : {std::tuple{0.0, 0.0277526, 0.0175072},
                                              {90.0, 0.0277526, 0.0175072},
                                              {180.0, 0.0275591, 0.00987064},
@@ -217,40 +202,35 @@ TEST(FalloffCutoff, CsfIsWhereContrastIsJustSeen) {
           if (low < 2.001) {
             continue;  // below the peak of the curve it has a second crossing
           }
-          EXPECT_NEAR(*falloff_cutoff_cpd(settings, e, meridian) / low, 1, 1e-3)
+          EXPECT_NEAR(*cutoff_of(settings, e, meridian) / low, 1, 1e-3)
               << luminance << " cd/m2, contrast " << contrast << ", " << e << " degrees towards " << meridian;
         }
       }
     }
   }
   // Dimmer frames need fewer samples.
-  FoveationSettings dim = model("csf");
-  dim.parameters.luminance_cd_m2 = 1;
-  EXPECT_LT(*falloff_cutoff_cpd(dim, 10), 0.9 * *falloff_cutoff_cpd(model("csf"), 10));
+  EXPECT_LT(*cutoff_of(model("csf:luminance=1"), 10), 0.9 * *cutoff_of(model("csf"), 10));
 }
 
-TEST(FalloffCutoff, RetinaDiffersByDirectionAndEye) {
-  FoveationSettings settings = model("retina");
-  const auto cutoff = [&](FalloffEye eye, double meridian_deg) {
-    settings.parameters.eye = eye;
-    return *falloff_cutoff_cpd(settings, 20, meridian_deg);
+TEST(DensityCutoff, RetinaDiffersByDirectionAndEye) {
+  const auto cutoff = [](const std::string& eye, double meridian_deg) {
+    return *cutoff_of(model("retina:eye=" + eye), 20, meridian_deg);
   };
   // Temporal, in the right eye's field on the right, is the best meridian of all, nasal better than the vertical ones.
-  EXPECT_GT(cutoff(FalloffEye::right, 0), cutoff(FalloffEye::right, 180));
-  EXPECT_GT(cutoff(FalloffEye::right, 180), 0.5 * cutoff(FalloffEye::right, 90));
+  EXPECT_GT(cutoff("right", 0), cutoff("right", 180));
+  EXPECT_GT(cutoff("right", 180), 0.5 * cutoff("right", 90));
   for (const double meridian : {0.0, 30.0, 90.0, 200.0, 330.0}) {
-    EXPECT_NEAR(cutoff(FalloffEye::left, meridian), cutoff(FalloffEye::right, 180 - meridian), 1e-12);
-    EXPECT_NEAR(cutoff(FalloffEye::both, meridian),
-                std::max(cutoff(FalloffEye::left, meridian), cutoff(FalloffEye::right, meridian)), 1e-12);
+    EXPECT_NEAR(cutoff("left", meridian), cutoff("right", 180 - meridian), 1e-12);
+    EXPECT_NEAR(cutoff("both", meridian), std::max(cutoff("left", meridian), cutoff("right", meridian)), 1e-12);
   }
   // An ellipse between the meridians.
-  const double x = cutoff(FalloffEye::right, 0);
-  const double y = cutoff(FalloffEye::right, 90);
+  const double x = cutoff("right", 0);
+  const double y = cutoff("right", 90);
   const double expected = 1 / std::sqrt(0.75 / (x * x) + 0.25 / (y * y));
-  EXPECT_NEAR(cutoff(FalloffEye::right, 30), expected, 1e-9);
+  EXPECT_NEAR(cutoff("right", 30), expected, 1e-9);
 }
 
-TEST(FalloffTable, IsMonotoneAndGoesThroughItsPoints) {
+TEST(DensityCurve, IsMonotoneAndGoesThroughItsPoints) {
   const std::vector<Vec2d> points{{0, 1}, {4, 0.9}, {5, 0.2}, {10, 0.2}, {40, 0.01}};
   const MonotoneCubic curve(points);
   for (const Vec2d& point : points) {
@@ -292,62 +272,92 @@ std::vector<Extreme> extremes() {
           {"one row", view_of_perspective(0.01, 50, 1), {0.1, 0.2, -1}}};
 }
 
-TEST(FalloffExtremes, DensityIsFiniteAndWithinItsLimits) {
+TEST(DensityExtremes, DensityIsFiniteAndWithinItsLimits) {
   for (const std::string& name : density_models()) {
     for (const Extreme& extreme : extremes()) {
-      const FoveationSettings settings = model(name);
-      const auto density = falloff_density(settings, extreme.view, extreme.gaze);
+      const auto density = density_image(model(name), extreme.view, extreme.gaze);
       ASSERT_TRUE(density) << name;
       for (const float p : density->pixels) {
-        ASSERT_GE(p, static_cast<float>(settings.density_floor)) << name << ", " << extreme.what;
+        ASSERT_GE(p, static_cast<float>(kLeastDensity)) << name << ", " << extreme.what;
         ASSERT_LE(p, 1.0F) << name << ", " << extreme.what;
       }
     }
   }
 }
 
-TEST(FalloffExtremes, ConstantsAtTheirLimits) {
+TEST(DensityExtremes, ConstantsAtTheirLimits) {
   const PlanarView view = view_of_perspective(1.0, 64, 40);
   const Vec3d gaze = view.direction(20.5, 10.5);
-  FoveationSettings settings = model("mar");
-  settings.parameters.mar_foveal_deg = 0;  // sees everything at the gaze itself
-  EXPECT_EQ(*falloff_cutoff_cpd(settings, 0), std::numeric_limits<double>::infinity());
-  EXPECT_EQ((*falloff_density(settings, view, gaze))(20, 10), 1.0F);
-  settings.parameters.normalization = FalloffNormalization::relative;
-  EXPECT_THROW((void)falloff_density(settings, view, gaze), Error);
-  settings = model("mar");
-  settings.parameters.mar_slope = 0;
-  EXPECT_DOUBLE_EQ(*falloff_cutoff_cpd(settings, 90), 48);
-  settings.parameters.mar_foveal_deg = 0;
-  const ImageGray full = *falloff_density(settings, view, gaze);
+  FoveationSettings settings = model("mar:foveal=0");  // sees everything at the gaze itself
+  EXPECT_EQ(*cutoff_of(settings, 0), std::numeric_limits<double>::infinity());
+  EXPECT_EQ((*density_image(settings, view, gaze))(20, 10), 1.0F);
+  EXPECT_THROW((void)density_image(model("mar:foveal=0,relative-to=fovea"), view, gaze), Error);
+  EXPECT_DOUBLE_EQ(*cutoff_of(model("mar:slope=0"), 90), 48);
+  const ImageGray full = *density_image(model("mar:slope=0,foveal=0"), view, gaze);
   for (const float p : full.pixels) {
     EXPECT_EQ(p, 1.0F);
   }
-  settings = model("log-polar");
-  settings.parameters.log_polar_sigma = 0.2;
-  settings.parameters.log_polar_alpha = 0.5;
-  const ImageGray crowded = *falloff_density(settings, view, gaze);
+  const ImageGray crowded = *density_image(model("log-polar:sigma=0.2,alpha=0.5"), view, gaze);
   for (const float p : crowded.pixels) {
     EXPECT_TRUE(p > 0 && p <= 1);
   }
-  settings = model("csf");
-  settings.parameters.contrast = 1e-6;  // seen by nobody
-  EXPECT_EQ(*falloff_cutoff_cpd(settings, 0), 0);
-  EXPECT_EQ((*falloff_density(settings, view, gaze))(20, 10), static_cast<float>(settings.density_floor));
-  settings = model("linear");
-  settings.parameters.ramp = {8, 8, 0};  // a step
-  EXPECT_EQ((*falloff_density(settings, view, gaze))(20, 10), 1.0F);
-  EXPECT_EQ((*falloff_density(settings, view, gaze))(60, 30), static_cast<float>(settings.density_floor));
+  settings = model("csf:contrast=0.000001");  // seen by nobody
+  EXPECT_EQ(*cutoff_of(settings, 0), 0);
+  EXPECT_EQ((*density_image(settings, view, gaze))(20, 10), static_cast<float>(kLeastDensity));
+  settings = model("linear:inner=8,outer=8.0001,least=0");  // all but a step
+  EXPECT_EQ((*density_image(settings, view, gaze))(20, 10), 1.0F);
+  EXPECT_EQ((*density_image(settings, view, gaze))(60, 30), static_cast<float>(kLeastDensity));
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    parse_density(text);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    return error.what();
+  }
+  return {};
+}
+
+TEST(DensityText, IsReadBackAsItWas) {
+  for (const DensityInfo& info : densities()) {
+    EXPECT_EQ(to_string(parse_density(info.name)), info.name);
+    for (const NamedParameter& parameter : info.parameters) {
+      const std::string highest = parameter.words.empty() ? fmt::format("{}", parameter.high) : parameter.words.back();
+      const std::string text = fmt::format("{}:{}={}", info.name, parameter.name, highest);
+      if (refusal(text).empty()) {
+        EXPECT_EQ(to_string(parse_density(text)), parameter.value == parameter.high ? info.name : text);
+      }
+    }
+  }
+  EXPECT_EQ(to_string(parse_density("mar: foveal=0.05 , slope=0.03")), "mar:slope=0.03,foveal=0.05");
+  EXPECT_EQ(to_string(parse_density("rates/d.####.exr")), "rates/d.####.exr");
+}
+
+TEST(DensityText, SaysWhatIsWrong) {
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal("acuty"), HasSubstr("did you mean 'acuity'"));
+  EXPECT_THAT(refusal("mar:slop=1"), HasSubstr("did you mean 'slope'"));
+  EXPECT_THAT(refusal("mar:slope"), HasSubstr("write slope=..."));
+  EXPECT_THAT(refusal("mar:slope=181"), HasSubstr("give 0 to 180"));
+  EXPECT_THAT(refusal("mar:slope=steep"), HasSubstr("'steep' is not possible for slope"));
+  EXPECT_THAT(refusal("csf:contrast=0"), HasSubstr("more than 0, up to 1"));
+  EXPECT_THAT(refusal("geisler-perry:contrast=0.015625"), HasSubstr("more than 0.015625"));  // sees no contrast of 1/64
+  EXPECT_THAT(refusal("retina:eye=third"), HasSubstr("both, left, right"));
+  for (const char* const model : {"linear", "quadric"}) {  // a fall needs room: 5 to 5 degrees is none
+    EXPECT_THAT(refusal(fmt::format("{}:inner=5,outer=5", model)), HasSubstr("inner=5 is not less than outer=5"));
+    EXPECT_THAT(refusal(fmt::format("{}:outer=4", model)), HasSubstr("inner=5 is not less than outer=4"));
+  }
 }
 
 // A tenth of a degree across 16384 pixels: the angle to the next pixel is 1e-7 radians, of which acos would keep seven
 // digits.
-TEST(FalloffExtremes, SmallAnglesKeepTheirDigits) {
+TEST(DensityExtremes, SmallAnglesKeepTheirDigits) {
   const PlanarView view = view_of_perspective(0.1 * 4 / 16384 * kRadPerDeg, 16384, 4);
-  FoveationSettings settings = model("table");
-  settings.parameters.table = {"", {{0, 1}, {0.05, 0.5}}};  // a straight line
+  FoveationSettings settings;
+  settings.sampling = a_curve({{0, 1}, {0.05, 0.5}});  // a straight line
   const Vec3d gaze = view.direction(8192, 2);
-  const DensityField field(settings, view, gaze, {}, std::get<DensityModel>(make_falloff(settings, view, gaze)));
+  const DensityField field(view, gaze, {}, std::get<DensityModel>(sampling_model(settings, view, gaze)));
   for (const int steps : {1, 2, 10, 100, 1000}) {
     const double e = std::atan(steps * view.step_x) * kDegPerRad;
     EXPECT_NEAR((1 - field.at(8192 + steps, 2)) / (10 * e), 1, 1e-8) << steps;

@@ -8,7 +8,7 @@
 // In the right eye's visual field the temporal side is on the right, in the left eye's on the left.
 #include <cmath>
 
-#include "foveation/falloff.hpp"
+#include "foveation/densities.hpp"
 
 namespace gazetrace {
 namespace {
@@ -36,14 +36,14 @@ double right_eye_cpd(double e, double cosine, double sine) {
 
 }  // namespace
 
-Falloff falloff_retina(const FoveationSettings& settings, const PlanarView& /*view*/, const Vec3d& /*gaze_direction*/) {
+DensityModel retina_model(FieldOf eye) {
   DensityModel model;
   model.uses_meridian = true;
-  model.value = [eye = settings.parameters.eye](const FalloffPlace& place) {
+  model.value = [eye](const DensityPlace& place) {
     const double cosine = place.meridian.x;
     // The temporal meridian is the better one at every eccentricity, so of two eyes the one counts on whose temporal
     // side the place is.
-    const double x = eye == FalloffEye::right ? cosine : eye == FalloffEye::left ? -cosine : std::abs(cosine);
+    const double x = eye == FieldOf::right ? cosine : eye == FieldOf::left ? -cosine : std::abs(cosine);
     return right_eye_cpd(place.eccentricity_deg, x, place.meridian.y);
   };
   return model;
