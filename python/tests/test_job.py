@@ -9,9 +9,9 @@ from support import SCENE, TestCase, small_job
 
 class JobTest(TestCase):
     def test_names_are_checked_when_they_are_given(self):
-        self.assertSays("did you mean 'regions'", "usage", gazetrace.Job, falloff="region")
+        self.assertSays("did you mean 'regions'", "usage", gazetrace.Job, sampling="region")
         self.assertSays("did you mean 'guided'", "usage", gazetrace.Job().replace, filter="guide")
-        self.assertSays("a filter has this name", "usage", gazetrace.Job, falloff="guided")
+        self.assertSays("give one of these", "usage", gazetrace.Job, density="guided")
 
     def test_names_are_those_of_the_schema_with_underscores(self):
         names = [option["name"] for option in gazetrace.options()]

@@ -36,6 +36,7 @@ class Foveation(harness.CliTest):
                 arguments = ["--density", model, "--spp", "1.5"]
                 traced = self.counts(*arguments)["traced_samples"]
                 self.assertAlmostEqual(traced, 1.5 * 64 * 36, delta=1.1)
+                model = model.removesuffix(".csv")
                 self.run_ok("render", "box.gltf", *GAZE, *arguments, "-o", f"{model}/f.exr", "--map", f"{model}/map.exr",
                             "--quiet")
                 with open(self.folder / model / "f.timing.csv", newline="") as file:

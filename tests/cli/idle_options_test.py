@@ -57,7 +57,7 @@ class IdleOptions(harness.CliTest):
             ["--accumulate", "reproject", "--accumulate-blend", "0.2", "--accumulate-order", "before"],
             ["--density", "mar", "--block-samples", "4", "--max-block", "4"],
             ["--region-samples", "4,4,4"],
-            ["--density", "csf:eye=left,luminance=20"],
+            ["--density", "csf:eye=left,luminance=20,relative-to=fovea"],
             ["--exposure", "auto", "--exposure-key", "0.3", "--exposure-smoothing", "1s"],
             ["--preset", "paper", "--density", "mar"],  # a preset's settings are not the user's
         ):

@@ -72,7 +72,7 @@ class TwoSided(harness.CliTest):
 
     def test_the_largest_number_of_a_frame(self):
         self.write("still.gltf", json.dumps(harness.box_gltf()))
-        self.run_ok("render", "still.gltf", "--size", "16x9", "--falloff", "uniform", "--spp", "1", "-o", "f.####.png",
+        self.run_ok("render", "still.gltf", "--size", "16x9", "--sampling", "uniform", "--spp", "1", "-o", "f.####.png",
                     "--accumulate", "two-sided", "--frames", "2147483647")
         self.assertEqual([path.name for path in self.folder.glob("f.*.png")], ["f.2147483647.png"])
 

@@ -117,11 +117,12 @@ void add_sampling_choice(JobSchema& schema) {
               "ecc_deg,density; or an EXR file of samples a pixel (of relative rates with --spp), stretched over the "
               "frame, with #### in its name one for each frame. Chooses --sampling density")
           .decides_by_file()
-          .idle_when({with_other_sampling("density")});
+          .idle_when({without_density(), with_other_sampling("density")});
   within_sampling(density, density_type()).implies = {"sampling", "density"};
   JobIdleRule without_any_gaze = without_gaze();
   without_any_gaze.holds = [](const JobSettings& job) {
-    return !has_gaze(job) && traits_of(job.foveation.sampling).needs_gaze;
+    const Sampling& sampling = job.foveation.sampling;  // of a density it is told by itself
+    return !has_gaze(job) && traits_of(sampling).needs_gaze && !std::holds_alternative<DensitySampling>(sampling);
   };
   OptionOf<JobSettings>& sampling =
       schema

@@ -109,9 +109,9 @@ TEST_F(RunJob, ShowsFramesThatNoFileHolds) {
 
 TEST_F(RunJob, NamesAreCheckedWhenTheyAreGiven) {
   const auto says = [](const char* words) { return testing::ThrowsMessage<Error>(HasSubstr(words)); };
-  EXPECT_THAT([&] { set_option(job_, "falloff", "region"); }, says("did you mean 'regions'"));
+  EXPECT_THAT([&] { set_option(job_, "sampling", "region"); }, says("did you mean 'regions'"));
   EXPECT_THAT([&] { set_option(job_, "filter", "guide"); }, says("did you mean 'guided'"));
-  EXPECT_THAT([&] { set_option(job_, "falloff", "guided"); }, says("a filter has this name: give `filter`"));
+  EXPECT_THAT([&] { set_option(job_, "density", "guided"); }, says("give one of these, or a file"));
   set_option(job_, "filter", "auto");
 }
 
