@@ -10,7 +10,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr std::size_t kMostRows = 176;
+constexpr std::size_t kMostRows = 160;
 
 TEST(OptionTable, HasNoMoreRowsThanPeopleCanChooseFrom) {
   EXPECT_LE(job_schema().options().size(), kMostRows)
