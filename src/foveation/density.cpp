@@ -8,7 +8,7 @@
 #include <cmath>
 #include <memory>
 
-#include "core/named_values.hpp"
+#include "foveation/named_values.hpp"
 #include "foveation/densities.hpp"
 #include "foveation/density_curve.hpp"
 #include "gazetrace/error.hpp"

@@ -4,7 +4,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "core/named_values.hpp"
+#include "foveation/named_values.hpp"
 #include "foveation/model.hpp"
 #include "gazetrace/error.hpp"
 

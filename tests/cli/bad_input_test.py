@@ -255,7 +255,7 @@ class BadOptions(harness.CliTest):
             ("--gaze-max-age", "50", ["--gaze-max-age", "unit"]), ("--gaze-max-age", "1.5ns", ["nanosecond"]),
             ("--gaze-max-age", "-1s", ["--gaze-max-age"]), ("--gaze-mode", "holdd", ["hold"]),
             ("--region-samples", "1,2", ["--region-samples"]), ("--region-eccentricities", "8.5,2.6", ["angle"]),
-            ("--region-blocks", "0,4", ["block"]), ("--density", "region", ["regions"]), ("--filter", "liner", ["linear"]),
+            ("--region-blocks", "0,4", ["block"]), ("--sampling", "region", ["regions"]), ("--filter", "liner", ["linear"]),
             ("--bounces", "-1", ["--bounces"]), ("--threads", "-1", ["--threads"]), ("--seed", "-1", ["--seed"]),
             ("--exposure", "bright", ["--exposure"]), ("--yfov", "180", ["--yfov"]), ("--env", "constant:1,2", ["--env"]),
             ("--env", "constant:-1,0,0", ["negative"]), ("--only-pixel", "64,0", ["--only-pixel", "64x36"]),

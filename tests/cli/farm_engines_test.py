@@ -91,7 +91,7 @@ class RealEngines(harness.CliTest):
             return
         traced, lost = (self.attempts.seconds("trace", is_whole) for is_whole in (True, False))
         finish = sum(self.attempts.seconds("finish", True))
-        size = sum(path.stat().st_size for path in (self.folder / "out").glob("traced.*"))
+        size = sum(path.stat().st_size for path in (self.folder / "out").glob("*traced.*"))
         both = sum(traced) + finish
         print(f"CPU: one run {self.whole_cpu_s:.1f} s; {len(traced)} attempts that traced to the end {sum(traced):.1f} s (longest "
               f"{max(traced):.1f} s), finish {finish:.1f} s, together {100 * (both / self.whole_cpu_s - 1):+.1f} %; apart from "

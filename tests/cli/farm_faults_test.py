@@ -44,7 +44,7 @@ class Farm(harness.CliTest):
             return {int(row["frame"]): row for row in csv.DictReader(file)}
 
     def times(self, folder):
-        return {path.name: path.stat().st_mtime_ns for path in (self.folder / folder).glob("f.*")}
+        return {path.name: path.stat().st_mtime_ns for path in (self.folder / folder).glob("f.[0-9]*")}
 
 
 class MergeLooksAtFiles(Farm):
@@ -110,7 +110,7 @@ class MergeLooksAtFiles(Farm):
 
     def test_nothing_is_left_to_join(self):
         self.parts("out")
-        for path in (self.folder / "out").glob("f.*"):
+        for path in (self.folder / "out").glob("f.[0-9]*"):
             path.unlink()
         self.assert_refused(["merge", "out", "--allow-missing"], ["no frame is left to join"])
 
@@ -357,7 +357,7 @@ class Signals(Running):
         slow = [*self.SLOW, "--grace", "0s"]
         line = self.interrupt((self.folder / "out/f.run.json").exists, signal.SIGTERM, *slow)
         self.assertIn("0 of 4 frames are done, 1-4 left", line)
-        self.assertEqual([name for name in self.files("out") if name.startswith("f.")], [])
+        self.assertEqual([name for name in self.files("out") if name.startswith("f.0")], [])
 
     def test_the_time_is_up(self):
         result = self.run_program("render", *JOB, *outputs("out"), *self.SLOW, "--max-time", "1s", "--grace", "0.5s")

@@ -247,7 +247,7 @@ class Engines(FarmFiles):
         self.assertEqual(self.pictures("out"), self.whole("history.toml"))
         self.assertEqual(self.status()["tasks"][-1]["done"], 6)
         # What was traced is not needed any more.
-        for path in (self.folder / "out").glob("traced.*"):
+        for path in (self.folder / "out").glob("*traced.*"):
             path.unlink()
         self.assertTrue(self.status()["is_done"])
 

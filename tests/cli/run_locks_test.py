@@ -78,7 +78,7 @@ class Locks(Running):
         job = ["render", *JOB, *self.OUTPUTS]
         first = subprocess.Popen([harness.PROGRAM, *job, *self.SLOW, "--chunk", "1/2"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
         self.addCleanup(lambda: (first.kill(), first.wait(), first.stderr.close()))
-        self.wait_for(lambda: self.owners("b") and list((self.folder / "a").glob("run.*.files")), first)
+        self.wait_for(lambda: self.owners("b") and list((self.folder / "a").glob("*run.*.files")), first)
         self.run_ok(*job, "--frames", "1-4", "--chunk", "2/2")
         self.assertIsNone(first.poll(), "it was to run all the while")
         self.assert_refused([*job, *self.SLOW, "--chunk", "1/2", "--resume"], [f"process {first.pid} on"], 3)

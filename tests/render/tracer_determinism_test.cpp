@@ -138,7 +138,7 @@ TEST(TracerDeterminism, AllFeaturesIsAnOptionOfTheTracer) {
   const SamplingMap map = uniform_map(32, 24, 4);
   const SparseFrame small = PathTracer(scene, threads(1)).at_rest().trace(kCamera, 1, map, {});
   const SparseFrame full = PathTracer(scene, all).at_rest().trace(kCamera, 1, map, {});
-  EXPECT_EQ(small.stats.kernel, "plain");
+  EXPECT_EQ(small.stats.kernel, "unlayered");
   EXPECT_EQ(full.stats.kernel, "all");
   expect_same_bits(small, full, map);
 }

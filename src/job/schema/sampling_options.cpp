@@ -52,6 +52,7 @@ const OptionType& found_type(Find /*find*/) {
 OptionOf<JobSettings>& within_sampling(OptionOf<JobSettings>& option, const OptionType& type) {
   option.type = &type;
   option.offset = at(&JobSettings::foveation).offset;
+  option.defaults = option.values(option_detail::defaults<JobSettings>());
   return option;
 }
 
@@ -117,7 +118,7 @@ void add_sampling_choice(JobSchema& schema) {
               "ecc_deg,density; or an EXR file of samples a pixel (of relative rates with --spp), stretched over the "
               "frame, with #### in its name one for each frame. Chooses --sampling density")
           .decides_by_file()
-          .idle_when({without_density(), with_other_sampling("density")});
+          .idle_when({with_other_sampling("density"), without_density()});
   within_sampling(density, density_type()).implies = {"sampling", "density"};
   JobIdleRule without_any_gaze = without_gaze();
   without_any_gaze.holds = [](const JobSettings& job) {

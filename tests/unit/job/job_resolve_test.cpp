@@ -241,6 +241,7 @@ TEST_F(Resolve, AFallOffThatSavesNothingIsTold) {
   set_option(job, "screen-cm", "60,33.75");
   set_option(job, "screen-distance-cm", "60");
   set_option(job, "density", "geisler-perry");
+  job.settings.foveation.spp.reset();
   set_option(job, "size", "160x90");
   ResolveOptions plan;
   plan.scope = ResolveScope::plan;

@@ -68,7 +68,7 @@ TEST(Job, FilesThatCannotBeReadAndWrongValuesAreRefused) {
   EXPECT_THAT(error_of([] { job_from_toml("\nspp = \"many\"\n", "job.toml"); }), HasSubstr("job.toml:2: spp: 'many'"));
   EXPECT_THAT(error_of([] { job_from_toml("ssp = 1\n", "job.toml"); }), HasSubstr("did you mean 'spp'"));
   Job job;
-  EXPECT_THAT(error_of([&] { set_option(job, "spp", "many"); }), HasSubstr("`spp`: 'many' is not a whole number"));
+  EXPECT_THAT(error_of([&] { set_option(job, "spp", "many"); }), HasSubstr("`spp`: 'many' is not a number"));
   EXPECT_THAT(error_of([&] { set_option(job, "ssp", "1"); }), HasSubstr("did you mean 'spp'"));
   EXPECT_THAT(error_of([&] { set_option(job, "spp", std::vector<std::string>{"1", "2"}); }), HasSubstr("one value"));
   EXPECT_THAT(error_of([&] { set_option(job, "preset", "papre"); }), HasSubstr("did you mean 'paper'"));

@@ -23,7 +23,8 @@ class RunJob : public testing::Test {
     set_option(job_, "eye", "0,0,3");
     set_option(job_, "target", "0,0,0");
     set_option(job_, "size", "32x18");
-    set_option(job_, "screen", "paper");
+    set_option(job_, "screen-px", "32,18");
+    set_option(job_, "screen-ppd", "20");
     set_option(job_, "frames", "1-3");
     set_option(job_, "gaze-at", "0.5,0.5");
     set_option(job_, "output", folder_ / "f.####.exr");

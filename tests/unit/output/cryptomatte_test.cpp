@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names, identifiers and manifests of Cryptomatte layers.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -37,7 +37,7 @@ label = "sampling"
 region-samples = [8, 4, 2]
 [[setting]]
 label = "filter"
-filter = "linear"
+filter = "none"
 [[setting]]
 label = "history"
 accumulate = "running"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/named_values.hpp"
+#include "foveation/named_values.hpp"
 
 #include <fmt/format.h>
 
