@@ -21,5 +21,5 @@ awk -F, '
     printf "uniform:  %9d samples, %8.1f ms for tracing and reconstruction\n", samples[1], ms[1]
     printf "foveated: %9d samples, %8.1f ms\n", samples[2], ms[2]
     printf "ratio:    %9.2f x samples, %6.2f x time\n", samples[1] / samples[2], ms[1] / ms[2]
-  }' out/compare/uniform/timing*.csv out/compare/foveated/timing*.csv
+  }' out/compare/uniform/*timing*.csv out/compare/foveated/*timing*.csv
 echo "pictures: out/compare/uniform/ and out/compare/foveated/ (map.*.exr is the sampling map)"

@@ -223,6 +223,53 @@ class MeasureOptions(TypedDict, total=False):
     ambient_lux: Value | None
     reflectivity: Value | None
     correct_border: bool | None
+    pooling_weights: Value | None
+    fail_above: str | Sequence[Value] | None
+    fail_below: str | Sequence[Value] | None
+    frames: Value | Iterable[int] | None
+    anyway: bool | None
+    gaze_at: Value | Sequence[Value] | None
+    gaze_mode: Value | None
+    gaze_offset: Value | None
+    gaze_start: Value | None
+    region_eccentricities: Value | Sequence[Value] | None
+    frame_rect: Value | Sequence[Value] | None
+    gaze_format: Value | None
+    gaze_recording: Value | None
+    gaze_events: Value | None
+    gaze_time_column: Value | None
+    gaze_x_column: Value | None
+    gaze_y_column: Value | None
+    gaze_z_column: Value | None
+    gaze_validity_column: Value | None
+    gaze_valid_values: Value | Sequence[Value] | None
+    gaze_confidence_column: Value | None
+    gaze_pupil_column: Value | None
+    gaze_eye_column: Value | None
+    gaze_recording_column: Value | None
+    gaze_time_unit: Value | None
+    gaze_unit: Value | None
+    gaze_origin: Value | None
+    gaze_sort: bool | None
+    gaze_columns: Value | None
+    gaze_axes: Value | None
+    gaze_frame: Value | None
+    gaze_eye: Value | None
+    gaze_dominant: Value | None
+    gaze_min_confidence: Value | None
+    gaze_zero_missing: bool | None
+    gaze_missing_value: Value | None
+    gaze_swap_xy: bool | None
+    gaze_flip_x: bool | None
+    gaze_flip_y: bool | None
+    gaze_decimal_comma: bool | None
+    trial: Value | None
+    trial_by: Value | None
+    trial_start: Value | None
+    trial_end: Value | None
+    trial_nth: Value | None
+    trial_per_block: bool | None
+    trial_table: Value | None
     screen: Value | None
     screen_px: Value | Sequence[Value] | None
     screen_cm: Value | Sequence[Value] | None
@@ -231,3 +278,7 @@ class MeasureOptions(TypedDict, total=False):
     screen_ppd: Value | None
     ocio: Value | None
     ocio_input: Value | None
+    csv: Value | None
+    json: Value | None
+    map_overlay: bool | None
+    overwrite: bool | None

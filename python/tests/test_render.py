@@ -53,7 +53,7 @@ class RenderTest(TestCase):
         next(first)
         again = small_job(output=[self.folder / "f.%04d.exr"], frames="3-4", chunk="1/1")
         self.assertSays("wait for it", "runtime", again.render)
-        small_job(output=[self.folder / "f.####.exr"], frames="4-5", chunk="1/1").run()
+        small_job(output=[self.folder / "f.####.exr"], frames="5-6", chunk="1/1").run()
         first.close()
         again.run()
 

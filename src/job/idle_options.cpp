@@ -12,7 +12,9 @@ namespace gazetrace {
 Warnings idle_option_warnings(const Job& job, const JobSchema& schema) {
   Warnings warnings;
   for (const OptionOf<JobSettings>& option : schema.options()) {
-    if (!job.is_given(option.name) || option.values(job.settings) == option.defaults) {
+    // An option without a value of its own, such as a density while another sampling is chosen, has no default to keep.
+    const bool is_default = !option.defaults.empty() && option.values(job.settings) == option.defaults;
+    if (!job.is_given(option.name) || is_default) {
       continue;
     }
     const auto rule = std::find_if(option.idle.begin(), option.idle.end(),

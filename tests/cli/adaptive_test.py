@@ -148,7 +148,7 @@ class Adaptive(harness.CliTest):
 
     def test_the_record_says_what_was_decided(self):
         self.run_ok("render", "box.gltf", *VIEW[:-2], "--spp", "2", "-o", "spp/f.exr")
-        self.assertIn("2 samples everywhere", self.record("spp")["facts"]["sampling"])
+        self.assertIn("2 samples a pixel everywhere", self.record("spp")["facts"]["sampling"])
         for limit, is_told in ((None, True), ("4", False)):
             folder = f"blocks-{limit}"
             more = ["--max-block", limit] if limit else []
@@ -249,8 +249,8 @@ class Adaptive(harness.CliTest):
         # A refusal leaves nothing behind that the next command would meet.
         render = ["render", "box.gltf", "--size", "64x40", "-o", "x/x.exr", "--quiet"]
         for words, *arguments in [
-            (["--target-relmse", "visible"], "--sampling", "regions", "--target-relmse", "0.01"),
-            (["--target-relmse", "budget"], "--sampling", "adaptive", "--target-relmse", "0.1", "--spp", "3"),
+            (["--target-relmse", "adaptive"], "--sampling", "regions", "--target-relmse", "0.01"),
+            (["--target-relmse", "--spp"], "--sampling", "adaptive", "--target-relmse", "0.1", "--spp", "3"),
             (["--target-relmse"], "--sampling", "adaptive", "--target-relmse", "0"),
             (["--min-spp"], "--sampling", "adaptive", "--min-spp", "5", "--max-spp", "4"),
             (["--spp", "pilot"], "--sampling", "adaptive", "--spp", "0.01"),

@@ -153,7 +153,7 @@ class Recordings(harness.CliTest):
         self.assertEqual(lengths, [24] * 4)  # a second each
 
     def test_a_plan_of_hours_without_gaze_is_refused(self):
-        self.write("hours.asc", eyelink([10_000, 72_010_000]))
+        self.write("hours.asc", eyelink([10_000, 14_410_000]))
         plan = ["plan", "--gaze", "hours.asc", *VIEW, *SCREEN, "--fps", "60", "--gaze-transfer", "fraction"]
         self.assert_refused(plan, ["more than 3600 frames in a row", "--gaze-recording", "--gaze-max-missing-frames 0"])
         one = json.loads(self.run_ok(*plan, "--gaze-recording", "2", "--json").stdout)

@@ -114,7 +114,7 @@ class Sequences(harness.CliTest):
             self.render("parts", "--frames", frames, "--chunk", "1/1")
         self.assertEqual(self.pictures("parts"), whole)
         records = [name for name in self.files("parts") if name.endswith((".json", ".csv"))]
-        self.assertEqual(records, sorted(f"{stem}.{frames}.{suffix}" for frames in ("1-4", "5-8", "9-12")
+        self.assertEqual(records, sorted(f"f.{stem}.{frames}.{suffix}" for frames in ("1-4", "5-8", "9-12")
                                          for stem, suffix in (("run", "json"), ("timing", "csv"))))
         self.assertIn("1-12", self.run_ok("merge", "parts").stdout)
         self.assertEqual(self.frames_in_timing("parts/f.timing.csv"), list(range(1, 13)))
