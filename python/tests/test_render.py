@@ -171,7 +171,7 @@ class RenderTest(TestCase):
             shown = _core.read_picture(str(self.folder / f"frame.{frame.frame:04d}.png"))
             np.testing.assert_array_equal(frame.display(), np.rint(shown.pixels * 255))
             timing.append(frame.timing)
-        header, *rows = (self.folder / "f.timing.csv").read_text().splitlines()
+        header, *rows = (self.folder / "frame.timing.csv").read_text().splitlines()
         for row, ours in zip(rows, timing, strict=True):
             theirs = dict(zip(header.split(","), row.split(",")))
             for name in ("samples", "rays_primary", "rays_bounce", "fovea_samples", "gaze_event"):
