@@ -8,9 +8,9 @@
 #include <cmath>
 #include <memory>
 
-#include "foveation/named_values.hpp"
 #include "foveation/densities.hpp"
 #include "foveation/density_curve.hpp"
+#include "foveation/named_values.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {

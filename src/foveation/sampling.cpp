@@ -4,8 +4,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "foveation/named_values.hpp"
 #include "foveation/model.hpp"
+#include "foveation/named_values.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
