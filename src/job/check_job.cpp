@@ -97,7 +97,7 @@ void check_target(const JobSettings& job) {
   }
   if (job.only_pixel) {
     throw Error(ErrorKind::usage, option, "with `only-pixel` a single pixel is traced, and no quality is chosen",
-                "give `spp` as `rate` in run.json says");
+                "give `spp`, as the run's record says of its rate");
   }
   const AccumulateSettings& accumulate = job.accumulate;
   const bool adds_up = accumulate.mode == AccumulateMode::two_sided && !(accumulate.blend > 0) &&

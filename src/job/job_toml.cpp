@@ -133,15 +133,15 @@ std::vector<TomlSetting> toml_settings(const std::string& key, const TomlNode& n
   if (present == nullptr && find_former_option(key, {}) == nullptr) {
     throw Error(ErrorKind::input, place, unknown_among_many("key", key, names_of(options)), remedy);
   }
+  Option former;
+  former.shape = OptionShape::repeated;  // takes any values
+  const std::vector<std::string> given = toml_values(node, present != nullptr ? *present : former, path);
   // The record of a run of an earlier version states all of its settings, those that are gone, too.
-  const FormerOption* const known = present == nullptr ? find_former_option(key, {}) : nullptr;
+  const FormerOption* const known = find_former_option(key, given.size() == 1 ? given.front() : std::string());
   if (paths == PathsBegin::working_folder && known != nullptr && refusal_of(*known)) {
     return {};
   }
-  Option former;
-  former.shape = OptionShape::repeated;  // takes any values
-  const CurrentOptions current = current_options(key, toml_values(node, present != nullptr ? *present : former, path),
-                                                 ErrorKind::input, place + ": " + key);
+  const CurrentOptions current = current_options(key, given, ErrorKind::input, place + ": " + key);
   std::vector<TomlSetting> settings;
   for (const auto& [name, values] : current.settings) {
     const Option* option = find_option(options, name);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/recorded_run.hpp"
@@ -26,7 +27,7 @@ class RecordedRuns : public testing::Test {
   std::optional<RecordedRun> found(const std::string& digest = "d1") {
     RunRecord record;
     record.version = "0.1.0";
-    record.config_toml = job_as_toml(job_);
+    record.config_toml = changed_(job_as_toml(job_));
     record.settings_digest = "d1";
     record.part_digests = {"d2", "d3"};
     record.facts["view"] = "a view";
@@ -38,7 +39,21 @@ class RecordedRuns : public testing::Test {
   std::string record_name_ = "f.run.json";
   std::string log_ = folder_ / "log.csv";
   Job job_;
+  std::function<std::string(std::string)> changed_ = [](std::string toml) { return toml; };  // before it is recorded
 };
+
+// Pictures that are finished are of use whatever has become of the options that made them.
+TEST_F(RecordedRuns, FormerOptionsAndValuesThatAreGoneArePassedOver) {
+  changed_ = [](std::string toml) {
+    const std::string now = "filter = \"auto\"";
+    const std::size_t at = toml.find(now);
+    EXPECT_NE(at, std::string::npos) << toml;
+    return toml.replace(at, now.size(), "filter = \"tent\"") + "\nbvh = \"high\"\n";
+  };
+  const std::optional<RecordedRun> run = found();
+  ASSERT_TRUE(run);
+  EXPECT_EQ(run->settings().filter, JobSettings().filter);
+}
 
 TEST_F(RecordedRuns, TheScreenIsThatOfTheLogWhereNoneIsStated) {
   const std::optional<RecordedRun> run = found();
