@@ -15,7 +15,7 @@ set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRE
 add_library(gazetrace_pictures MODULE core/open_image_io.cpp)
 target_include_directories(gazetrace_pictures PRIVATE ${PROJECT_SOURCE_DIR}/include ${CMAKE_CURRENT_SOURCE_DIR})
 target_link_libraries(gazetrace_pictures PRIVATE gazetrace_flags OpenImageIO::OpenImageIO)
-set(picture_module_dir ${PROJECT_BINARY_DIR}/lib)
+set(picture_module_dir ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR})
 set_target_properties(gazetrace_pictures PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${picture_module_dir}
   CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 add_dependencies(gazetrace gazetrace_pictures)

@@ -25,6 +25,13 @@ class Talk(harness.CliTest):
             self.assertIn("Exit codes", result.stdout)
             self.assertEqual(result.stderr, "")
 
+    def test_no_library_comes_from_the_working_folder(self):
+        """A scene that was downloaded may lie beside files of any name."""
+        for library in ("libembree3.so.3", "libembree4.so.4", "libtbb.so.12", "libgazetrace_pictures.so"):
+            self.write(library, "no library")
+        done = subprocess.run([harness.PROGRAM, "version"], cwd=self.folder, capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_the_demo_makes_and_names_its_files(self):
         arguments = ["demo", "show", "--data", harness.SOURCE, "--size", "64x36", "--frames", "1-2", "--no-sweep"]
         result = self.run_ok(*arguments)
