@@ -54,14 +54,17 @@ std::uint64_t size_of(const PictureSource& source) {
 }
 
 // The pixels are only the claim of a header of a few bytes. Of black pictures a byte holds up to 170 pixels where the
-// compression is lossless, and up to 2700 where it is dwaa or dwab.
+// compression is lossless, and up to 2700 where it is dwaa or dwab. A crop may be of any size within its picture.
 void check_windows(const Imf::Header& header, std::uint64_t bytes, const std::string& place) {
   constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 30U;
   constexpr std::uint64_t kPixelsOfAnyFile = std::uint64_t{1} << 20U;
   const bool is_dwa = header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION;
+  constexpr std::uint64_t kPixelsAroundACrop = std::uint64_t{1} << 25U;
+  const std::uint64_t held = kPixelsOfAnyFile + (is_dwa ? 8192 : 1024) * bytes;
   for (const Imath::Box2i& window : {header.dataWindow(), header.displayWindow()}) {
     const std::uint64_t pixels = pixels_of(window);
-    if (pixels > kMostPixels || pixels > kPixelsOfAnyFile + (is_dwa ? 8192 : 1024) * bytes) {
+    const bool may_be_empty = window == header.displayWindow() && window != header.dataWindow();
+    if (pixels > kMostPixels || pixels > (may_be_empty ? std::max(held, kPixelsAroundACrop) : held)) {
       throw Error(ErrorKind::input, place,
                   "an EXR of " + std::to_string(window.max.x - window.min.x + 1) + " x " +
                       std::to_string(window.max.y - window.min.y + 1) + " pixels and " + std::to_string(bytes) +

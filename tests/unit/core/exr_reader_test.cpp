@@ -130,6 +130,8 @@ TEST(ExrReader, AHugeDisplayWindowAroundFewPixelsIsRefused) {
   const std::string path = write_exr((folder / "huge.exr"), box(0, 0, 30000, 30000), box(0, 0, 1, 1), kRgb);
   EXPECT_THROW(static_cast<void>(read_exr_rgb(path)), Error);
   EXPECT_THROW(static_cast<void>(load_environment(path)), Error);
+  const std::string crop = write_exr((folder / "crop.exr"), box(0, 0, 2047, 1023), box(9, 5, 10, 6), kRgb);
+  EXPECT_EQ(load_environment(crop).radiance(10, 6).x, value_at(0, 10, 6));
 }
 
 TEST(ExrReader, GrayIsYOrRAlone) {
