@@ -101,6 +101,9 @@ void check_frame(const MeanSettings& settings, FrameMean& mean) {
     throw Error(ErrorKind::usage, mean.path, "exists already", "give `resume` to add to it, or `overwrite`");
   }
   for (const std::string& path : mean.inputs) {
+    if (is_there(mean.path) && fs::equivalent(path, mean.path)) {  // whatever the spelling of both patterns
+      throw Error(ErrorKind::usage, mean.path, "is one of the renders", "name another output");
+    }
     const MeanStamp stamp = read_mean_stamp(path);
     const auto is_behind = [&](const auto& seed) { return stamps.front().seeds.contains(seed.first); };
     if (goes_on && stamps.front().mean_digest == stamp.mean_digest &&
@@ -133,6 +136,15 @@ std::optional<RunRecord> record_of(const std::vector<std::string>& renders, std:
     }
   }
   return std::nullopt;
+}
+
+// A mean has the name of its sequence for its record, and a render beside it may have the same.
+void check_record(const MeanSettings& settings) {
+  const std::string path = run_record_file_name(run_name_of(settings.output), "", false);
+  if (is_there(path) && !read_run_record(path).facts.contains("mean_of")) {
+    throw Error(ErrorKind::usage, path, "is the record of a render, and would be replaced by that of the mean",
+                "name another output");
+  }
 }
 
 void write_record(RunRecord record, const MeanSettings& settings, const MergeResult& result,
@@ -173,6 +185,7 @@ MergeResult merge_means(const MeanSettings& settings) {
     numbers.push_back(mean.frame);
     most = std::max(most, mean.inputs.size());
   }
+  check_record(settings);
   if (most < 2 && !settings.resume) {
     throw Error(ErrorKind::usage, "", "a mean is of two renders or more", "name renders with different seeds");
   }

@@ -143,6 +143,10 @@ class MergeMean(harness.CliTest):
         self.assert_refused(["merge", "--mean", a, b], ["--output"])
         self.assert_refused(["merge", "--mean", a, b, "-o", "m.png"], [".exr"])
         self.assert_refused(["merge", "--mean", a, b, "-o", a, "--overwrite"], ["one of the renders"])
+        same = a.replace("####", "%04d")  # the same files, spelled otherwise
+        self.assert_refused(["merge", "--mean", a, b, "-o", same, "--overwrite"], ["one of the renders"])
+        beside = a.replace(".####", "_####")  # a record of the same name
+        self.assert_refused(["merge", "--mean", a, b, "-o", beside, "--overwrite"], ["record of a render"])
         self.assert_refused(["merge", "--mean", b, "-o", a, "--resume"], ["is a render"])
         self.assert_refused(["merge", "a", "b"], ["--mean"])
         self.assertIn("lack frames 10", self.merge("some", [a, short], "--allow-missing").stderr)
