@@ -19,8 +19,9 @@ namespace gazetrace {
 //
 // The claim is on a file `.gazetrace.lock` in each folder that frames, maps, checkpoint and record go to. Each name of
 // a file stands for one position in it, which is locked, so that runs of other frames or other pictures share a
-// folder, however the folder and the pattern of the names are spelled. While runs hold it, its text names them.
-// Afterwards it stays, empty: who removed it could take it from a run that has just opened it.
+// folder, however the folder and the pattern of the names are spelled. A pattern with the frame's number in a folder's
+// name is claimed in the folder above; a run that names such a folder itself does not see that claim. While runs hold
+// it, its text names them. Afterwards it stays, empty: who removed it could take it from a run that has just opened it.
 class OutputLock {
  public:
   OutputLock() = default;  // claims nothing
