@@ -194,6 +194,7 @@ struct RecordedHistory {
 // Everything that is needed to repeat a run; stored as JSON.
 struct RunRecord {
   std::string version, build, instruction_set, ray_library;
+  std::string denoiser;  // denoiser_description(), where the filter is oidn; else empty
   std::vector<std::string> command_line;
   std::string config_toml;  // every option with its effective value
   std::string settings_digest;

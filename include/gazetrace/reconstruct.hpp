@@ -77,19 +77,34 @@ class Reconstruction {
   FilterInfo filter_;
 };
 
+// The library that the filter "oidn" calls, Open Image Denoise 2.
+struct DenoiserLibrary {
+  std::string path;             // empty: none was found
+  std::string version;          // "2.5.1"
+  std::string instruction_set;  // of its loops: "avx512", "avx2", "sse4.1" or "neon"
+};
+// Looks for it when it is first called: the environment variable GAZETRACE_OIDN_LIBRARY names its file or folder, or
+// is empty, and there is none; else the system's, one beside the program or in its build folder, that of Python's
+// `pyoidn`, Blender's. Error(usage) where the variable names what cannot be used.
+const DenoiserLibrary& denoiser_library();
+// Library, quality, weights and instruction set, for the records of runs; empty where there is none.
+std::string denoiser_description();
+
 // What decides which filter suits a job. The defaults are those of a foveated job that asks for nothing else.
 struct FilterFacts {
   bool foveated = true;            // a gaze steers where the samples go, by another sampling than a uniform one
   bool accumulates_sites = false;  // AccumulateMode::reproject under AccumulateOrder::before
   bool means_frames = false;       // AccumulateMode::running
   bool single_pixel = false;       // TraceSettings::only_pixel
+  bool accumulates = false;        // any AccumulateMode but off
+  bool has_denoiser = false;       // denoiser_library() has found one
 };
 struct FilterChoice {
   std::string name;
   std::string reason;  // the end of a sentence that begins "... because"
 };
-// "guided", since it shows edges and texture at full resolution, takes noise away, and tends to the samples' own mean
-// as they grow in number. "linear" wherever "guided" would not work (it needs all samples).
+// "oidn" where its library is there. "guided" where it is not, and for frames that are accumulated, since it takes the
+// light of other frames surface by surface. "linear" wherever "guided" would not work (it needs all samples).
 FilterChoice choose_filter(const FilterFacts& facts);
 
 }  // namespace gazetrace

@@ -187,7 +187,9 @@ FilterChoice filter_of(const JobSettings& job) {
                         .accumulates_sites = job.accumulate.mode == AccumulateMode::reproject &&
                                              job.accumulate.order == AccumulateOrder::before,
                         .means_frames = job.accumulate.mode == AccumulateMode::running,
-                        .single_pixel = job.only_pixel.has_value()});
+                        .single_pixel = job.only_pixel.has_value(),
+                        .accumulates = job.accumulate.mode != AccumulateMode::off,
+                        .has_denoiser = !denoiser_library().path.empty()});
 }
 
 }  // namespace gazetrace

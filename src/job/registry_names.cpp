@@ -29,12 +29,12 @@ bool has_name(const std::vector<std::string>& names, const std::string& name) {
 
 void check_filter_name(const std::string& name, const std::string& place) {
   const std::vector<std::string> known = names_of_all(reconstruction_filters());
+  if (name == "oidn" && denoiser_library().path.empty()) {
+    throw Error(ErrorKind::usage, place, "Open Image Denoise was not found",
+                "run cmake/denoiser.sh with the build folder, or name the library in GAZETRACE_OIDN_LIBRARY");
+  }
   if (name == "auto" || has_name(known, name)) {
     return;
-  }
-  if (name == "oidn") {
-    throw Error(ErrorKind::usage, place, "this build has no Open Image Denoise",
-                "build it where that library is found, or give guided");
   }
   throw Error(ErrorKind::usage, place, unknown_name_message("filter", name, known),
               has_name(names_of_all(densities()), name) ? "a density has this name: give `density`" : "");

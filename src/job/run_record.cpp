@@ -45,6 +45,7 @@ RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer
   record.build = build_description();
   record.instruction_set = instruction_set();
   record.ray_library = tracer.ray_library();
+  record.denoiser = resolved.job.settings.filter == "oidn" ? denoiser_description() : "";
   record.command_line = command_line;
   record.config_toml = job_as_toml(resolved.job);
   record.settings_digest = settings.settings_digest;

@@ -49,12 +49,13 @@ void RunRecordFile::warn_of_other_machine(const RunRecord& now, Warnings& warnin
     return;
   }
   if (before.instruction_set != now.instruction_set || before.build != now.build ||
-      before.ray_library != now.ray_library) {
+      before.ray_library != now.ray_library || before.denoiser != now.denoiser) {
     warnings.push_back(
-        fmt::format("{}: the run so far was made by '{}, {}, {}', this one is '{}, {}, {}'; frames may "
+        fmt::format("{}: the run so far was made by '{}, {}, {}{}{}', this one is '{}, {}, {}{}{}'; frames may "
                     "differ in their last bits",
-                    path_, before.build, before.instruction_set, before.ray_library, now.build, now.instruction_set,
-                    now.ray_library));
+                    path_, before.build, before.instruction_set, before.ray_library,
+                    before.denoiser.empty() ? "" : ", ", before.denoiser, now.build, now.instruction_set,
+                    now.ray_library, now.denoiser.empty() ? "" : ", ", now.denoiser));
   }
 }
 

@@ -174,6 +174,13 @@ RunRecord join_records(const std::vector<RunPart>& parts, const std::string& fra
     same("build", whole.build, record.build);
     same("instruction set", whole.instruction_set, record.instruction_set);
     same("ray library", whole.ray_library, record.ray_library);
+    // Other weights or loops make another picture, which would flicker from frame to frame.
+    if (whole.denoiser != record.denoiser) {
+      throw Error(ErrorKind::input, part.record_path,
+                  fmt::format("frames were denoised by '{}', those of {} by '{}'", record.denoiser,
+                              parts.front().record_path, whole.denoiser),
+                  "render them all with one library on one kind of processor");
+    }
     for (const auto& [key, value] : record.facts) {
       const bool shared = std::all_of(parts.begin(), parts.end(), [&, k = key, v = value](const RunPart& other) {
         const auto it = other.record.facts.find(k);

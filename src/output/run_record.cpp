@@ -71,6 +71,7 @@ std::string run_record_json(const RunRecord& record) {
                   {"build", record.build},
                   {"instruction_set", record.instruction_set},
                   {"ray_library", record.ray_library},
+                  {"denoiser", record.denoiser},
                   {"command_line", record.command_line},
                   {"settings_digest", record.settings_digest},
                   {"part_digests", record.part_digests},
@@ -108,7 +109,8 @@ RunRecord read_run_record(const std::string& path) {
     json.at("settings_digest").get_to(record.settings_digest);
     json.at("frames").get_to(record.frames);
     json.at("is_part").get_to(record.is_part);
-    // Records of earlier versions have no stage, parts, history and files.
+    // Records of earlier versions have no denoiser, stage, parts, history and files.
+    record.denoiser = json.value("denoiser", "");
     record.stage = json.value("stage", "");
     record.chunk_file = json.value("chunk_file", "");
     record.part_digests = json.value("part_digests", record.part_digests);

@@ -105,7 +105,7 @@ const std::vector<std::pair<std::string, std::string>> dependencies = {
     {R"(tiny_gltf\.h)", R"(src/scene/gltf/document\.cpp)"},
     {R"(meshoptimizer\.h)", R"(src/scene/gltf/meshopt\.cpp)"},
     {R"(draco/)", R"(src/scene/gltf/draco\.cpp)"},
-    {R"(OpenImageDenoise/)", R"(src/reconstruct/open_image_denoise\.cpp)"},
+    {R"(OpenImageDenoise|oidn\.h)", R"(no file: it is opened at run time)"},
     {R"(OpenImageIO/)", R"(src/core/open_image_io\.cpp)"},
     {R"(OpenColorIO/)", R"(src/color/ocio\.cpp)"},
     {R"((OpenEXR/|Imf|Imath|Iex))", R"(src/(output/exr(_\w+)?|core/exr_reader)\.(hpp|cpp))"},

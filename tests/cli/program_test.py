@@ -27,7 +27,7 @@ class Talk(harness.CliTest):
 
     def test_no_library_comes_from_the_working_folder(self):
         """A scene that was downloaded may lie beside files of any name."""
-        for library in ("libembree3.so.3", "libembree4.so.4", "libtbb.so.12", "libgazetrace_pictures.so"):
+        for library in ("libembree3.so.3", "libembree4.so.4", "libtbb.so.12", "libgazetrace_pictures.so", "libOpenImageDenoise.so.2"):
             self.write(library, "no library")
         done = subprocess.run([harness.PROGRAM, "version"], cwd=self.folder, capture_output=True, text=True, check=False)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -44,7 +44,7 @@ class Talk(harness.CliTest):
         self.assert_refused(["demo", "other", "--data", "nowhere"], ["nowhere", "example.toml"])
 
     def test_help_and_version_are_commands(self):
-        self.assertEqual(self.run_ok("version").stdout, self.run_ok("--version").stdout)
+        self.assertEqual(self.run_ok("version").stdout.splitlines(True)[0], self.run_ok("--version").stdout)
         self.assertEqual(self.run_ok("help").stdout, self.run_ok("--help").stdout)
         self.assertEqual(self.run_ok("help", "gaze", "inspect").stdout, self.run_ok("gaze", "inspect", "--help").stdout)
         self.assertIn("render", self.run_program("help", "rendre").stderr)

@@ -8,6 +8,8 @@
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "cli/json_output.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/reconstruct.hpp"
 
 namespace gazetrace {
 
@@ -15,8 +17,22 @@ Command add_version_command(CLI::App& app, const Invocation& /*invocation*/) {
   const auto json = std::make_shared<JsonOutput>();
   add_json_option(app, *json);
   return {[json] {
-            json->print(std::string("gazetrace ") + kVersion + "\n", [] {
-              return nlohmann::ordered_json{{"name", "gazetrace"}, {"version", kVersion}}.dump(2) + "\n";
+            DenoiserLibrary found;
+            std::string denoiser;
+            try {
+              found = denoiser_library();
+              denoiser = found.path.empty()
+                             ? "none: the filter guided takes the place of oidn; cmake/denoiser.sh brings it"
+                             : denoiser_description() + ", " + found.path;
+            } catch (const Error& unusable) {
+              denoiser = unusable.what();
+            }
+            json->print(std::string("gazetrace ") + kVersion + "\ndenoiser: " + denoiser + "\n", [&] {
+              return nlohmann::ordered_json{{"name", "gazetrace"},
+                                            {"version", kVersion},
+                                            {"denoiser", {{"version", found.version}, {"path", found.path}}}}
+                         .dump(2) +
+                     "\n";
             });
             return static_cast<int>(exit_done);
           },

@@ -158,6 +158,16 @@ TEST_F(Merge, DifferentBuildsAreSaid) {
               testing::ElementsAre(testing::HasSubstr("parts differ in instruction set")));
 }
 
+TEST_F(Merge, PartsOfDifferentDenoisersAreRefused) {
+  RunRecord one = part("1-5");
+  one.denoiser = "Open Image Denoise 2.5.1, quality high, built-in weights, avx2";
+  write(one, {1, 2, 3, 4, 5});
+  RunRecord other = part("6-7");
+  other.denoiser = "Open Image Denoise 2.3.3, quality high, built-in weights, avx2";
+  write(other, {6, 7});
+  expect_error({"2.3.3", "2.5.1", "one library"});
+}
+
 // A part whose frames depend on those before them; `found`: the frames whose history it began with.
 class MergeWithHistory : public Merge {
  protected:

@@ -16,6 +16,7 @@ TEST(RunRecord, RoundTrip) {
   record.build = "gcc \"12\"";
   record.instruction_set = "avx512";
   record.ray_library = "Embree";
+  record.denoiser = "Open Image Denoise 2.5.1";
   record.command_line = {"gazetrace", "render", "a b.gltf", "--key=\\\n"};
   record.config_toml = "a = 1\n# comment\n";
   record.settings_digest = "00ff";
@@ -32,6 +33,7 @@ TEST(RunRecord, RoundTrip) {
   write_text_atomically(path, run_record_json(record));
   EXPECT_EQ(run_record_json(read_run_record(path)), run_record_json(record));
   EXPECT_EQ(read_run_record(path).history, record.history);
+  EXPECT_EQ(read_run_record(path).denoiser, record.denoiser);
   EXPECT_EQ(read_run_record(path).part_digests, record.part_digests);
   const auto json = nlohmann::json::parse(file_bytes(path));
   EXPECT_EQ(json["command_line"][3], "--key=\\\n");

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a denoiser is shown of a frame: dense pictures at full resolution, whatever the sites are.
+#pragma once
+
+#include "gazetrace/foveation.hpp"
+#include "gazetrace/guides.hpp"
+#include "gazetrace/image.hpp"
+#include "gazetrace/trace.hpp"
+
+namespace gazetrace {
+
+// All pictures are of the frame's size. Where the radiance of other frames is to be joined, it is irradiance that
+// joins: radiance / (albedo + kAlbedoOffset), times the (joined) albedo + kAlbedoOffset.
+struct DenoiserInput {
+  ImageRgb radiance;   // linear Rec.709. Of sites of one pixel the samples' own mean
+  ImageRgb albedo;     // 0..1; 0 where nothing is hit
+  ImageRgb normal;     // world space, of length 1 at most: shorter where surfaces meet, zero where nothing is hit
+  ImageGray samples;   // a pixel; those of a site are divided among its pixels
+  bool clean = false;  // albedo and normal have so little noise that the denoiser may believe every pixel of them
+};
+inline constexpr float kAlbedoOffset = 0.02F;
+// Rays of the guides through each pixel: with four, and the samples' own first hits, features are as good to the
+// network as those of 64 samples.
+inline constexpr int kDenoiserGuideRays = 4;
+
+// `sparse` holds surfaces and first hits (TraceSettings::surfaces), `guides` of the map's size
+// have kDenoiserGuideRays rays. Albedo and normal
+// are means over the rays of the guides and the samples of a site of one pixel; by the samples alone where these see
+// through lens and shutter what the pinhole of the guides sees elsewhere. Sites of several pixels give each of them the
+// light on the surface that it sees, times its own albedo, and what it sees shine.
+DenoiserInput denoiser_input(const SparseFrame& sparse, const SamplingMap& map, const Guides& guides, int threads);
+
+}  // namespace gazetrace
