@@ -40,7 +40,7 @@ SparseFrame samples_of(const SamplingMap& map, const Guides& guides, const Seen&
     surface.count = site.samples;
     sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));
     sparse.surfaces.push_back(surface);
-    sparse.first_hits.push_back({.square_shift_px2 = n * seen.shift_px * seen.shift_px});
+    sparse.first_hits.emplace_back().square_shift_px2 = n * seen.shift_px * seen.shift_px;
     sparse.sum.push_back(surface.reflected);
     sparse.sum_square_luminance.push_back(n * light * light);
     sparse.count.push_back(site.samples);
