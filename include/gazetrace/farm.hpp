@@ -81,7 +81,8 @@ void write_farm(const FarmPlan& plan, const std::vector<std::size_t>& chunks);
 // The command of the shell that hands the farm's files over to the engine; empty: run_local() is what runs it.
 std::string submit_command(const FarmPlan& plan);
 
-enum class TaskState : std::uint8_t { missing, running, interrupted, failed, done };
+// unknown: it has begun and not ended, and whether it still runs cannot be told, since its folder cannot be locked.
+enum class TaskState : std::uint8_t { missing, running, interrupted, failed, done, unknown };
 const char* to_string(TaskState state);
 
 struct TaskStatus {

@@ -15,7 +15,9 @@ struct MeanSettings {
   std::vector<std::string> command_line;
   bool allow_missing = false;  // take the mean of what there is where a render lacks frames
   bool overwrite = false;
-  bool resume = false;  // the means that are there take in the renders that are not behind them yet
+  // The means that are there take in the renders that are not behind them yet. A frame of them that a render lacks is
+  // missing as any other.
+  bool resume = false;
 };
 
 // Writes the mean of each frame, weighted by the samples of its pixels, and a record beside the pictures. The mean's

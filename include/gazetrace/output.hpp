@@ -280,13 +280,12 @@ struct MergeResult {
   std::string frames;
   Warnings warnings;
 };
-// The record of the whole run. Where the parts differ, the record lists what each says, or a warning is added.
-RunRecord join_records(const std::vector<RunPart>& parts, const std::string& frames, Warnings& warnings);
 // Joins the parts of a sequence, see read_run_parts(), into its timing and record. Error(input) where the settings
 // digests of parts differ, where parts overlap, where files are not those that the parts wrote, and where frames are
 // missing (unless allowed); Error(usage) where timing or record exist and may not be overwritten. Where frames depend
 // on those before them, each part must have had the history of all frames before it, for instance from another part's
-// checkpoint; a history of only the last few frames (`preroll`) gives a warning.
+// checkpoint; a history of only the last few frames (`preroll`) gives a warning. Error(runtime) where a run or another
+// merge is writing timing or record.
 MergeResult merge_runs(const std::string& where, const MergeOptions& options = {});
 
 // Makes the folder of an output where it is missing. Error(input) where the file exists and may not be replaced, and

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // How two runs that write the same files keep out of each other's way.
-//   prepare_outputs(resolved);  // makes the folders
+//   make_output_folders(resolved);
 //   const OutputLock lock = lock_outputs(resolved.pipeline, resolved.frames);
-//   prepare_outputs(resolved);  // once more: another run may have made frames until then
+//   prepare_outputs(resolved);  // looks at what is there, of which nothing changes from here on
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,17 +17,23 @@
 
 namespace gazetrace {
 
+class FolderLock;
+
+// Files by the folder in which they are claimed: their own, or one above it.
+using FilesByFolder = std::map<std::string, std::vector<std::string>>;
+
 // A run's claim to the files that it writes. The kernel holds it for as long as the object lives, and no longer than
 // the process: a run that was killed holds up nobody, and one that is stopped keeps its claim however long that takes.
 //
 // The claim is on a file `.gazetrace.lock` in each folder that frames, maps, checkpoint and record go to. Each name of
 // a file stands for one position in it, which is locked, so that runs of other frames or other pictures share a
 // folder, however the folder and the pattern of the names are spelled. A pattern with the frame's number in a folder's
-// name is claimed in the folder above; a run that names such a folder itself does not see that claim. While runs hold
-// it, its text names them. Afterwards it stays, empty: who removed it could take it from a run that has just opened it.
+// name is claimed in the folder above, where a run that names such a folder itself looks, too. Of more than 2000
+// ranges of frames with gaps between them the nearest are claimed as one. While runs hold it, its text names them.
+// Afterwards it stays, empty: who removed it could take it from a run that has just opened it.
 class OutputLock {
  public:
-  OutputLock() = default;  // claims nothing
+  OutputLock();  // claims nothing
   ~OutputLock();
   OutputLock(OutputLock&& other) noexcept;
   OutputLock& operator=(OutputLock&& other) noexcept;
@@ -35,18 +44,19 @@ class OutputLock {
   [[nodiscard]] const Warnings& warnings() const { return warnings_; }
 
  private:
-  friend OutputLock lock_outputs(const PipelineSettings& settings, const std::vector<std::int32_t>& frames);
-  void release();
-  std::vector<int> files_;  // as the system numbers open files
+  friend OutputLock lock_files(const FilesByFolder& files);
+  std::vector<std::unique_ptr<FolderLock>> folders_;
   Warnings warnings_;
 };
 
-// Claims all files of a run over these frames, without waiting. The folders must be there. Error(runtime) that names
-// the owner where a living run writes one of them, on any machine or in any container, so that it may help to try again
-// later; Error(input) where a lock's file cannot be made.
+// Claims these files, without waiting. The folders must be there. Error(runtime) that names the owner where a living
+// run writes one of them, on any machine or in any container, so that it may help to try again later; Error(input)
+// where a lock's file cannot be made.
+OutputLock lock_files(const FilesByFolder& files);
+// Those of a run over these frames.
 OutputLock lock_outputs(const PipelineSettings& settings, const std::vector<std::int32_t>& frames);
 
-// Whether a run lives that has claimed this file.
-bool is_locked(const std::string& path);
+// Whether a run lives that has claimed this file; nothing where that cannot be told, as in file systems without locks.
+std::optional<bool> is_locked(const std::string& path);
 
 }  // namespace gazetrace

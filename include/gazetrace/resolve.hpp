@@ -41,6 +41,8 @@ enum class ResolveScope {
   render,
 };
 
+struct ResolvedJob;
+
 struct ResolveOptions {
   ResolveScope scope = ResolveScope::render;
   // Reports the loading of the scene's textures and meshes, see SceneReadOptions.
@@ -49,6 +51,9 @@ struct ResolveOptions {
   const Scene* loaded = nullptr;
   // Whether the warnings include options that have no effect.
   bool tell_idle = true;
+  // With the scope render: called when all is known but the history, before anything is read that another run of the
+  // job may be writing.
+  std::function<void(ResolvedJob& resolved)> claim;
 };
 
 // What the tasks of an array job share: how the frames are divided (ChunkFile), for the first task to write down.
@@ -92,9 +97,11 @@ FilterChoice filter_of(const JobSettings& job);
 
 TracerOptions tracer_options(const JobSettings& job);
 
-// Throws Error(input) naming the first output that exists, unless the job overwrites or resumes; and Error(usage) where
-// it resumes and would render over finished frames of other settings or inputs, unless it overwrites as well. Then
-// makes the folders and tests whether files can be created in them.
+// Throws Error(input) naming the first output that exists, unless the job overwrites or resumes. Then makes the folders
+// and tests whether files can be created in them.
+void make_output_folders(const ResolvedJob& resolved);
+// The same, and Error(usage) where the job resumes and would render over finished frames of other settings or inputs,
+// unless it overwrites as well. Writes down how frames are divided. A run claims its files before (output_lock.hpp).
 void prepare_outputs(const ResolvedJob& resolved);
 
 // The record of a run that begins now, whose state is "running"; finish_run_record() states how it ended. The record

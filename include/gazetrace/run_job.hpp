@@ -51,7 +51,7 @@ struct FinishedRun {
 
 // Checks and resolves the job, prepares its outputs and claims them, renders, and keeps the run's record beside the
 // pictures: it is written when the run begins and when it ends, so that a killed run has one, too. Throws the errors of
-// resolve(), prepare_outputs(), lock_outputs() and render_sequence(). Where a stated quality turns out to be out of
+// resolve(), lock_outputs(), prepare_outputs() and render_sequence(). Where a stated quality turns out to be out of
 // reach before any picture was begun, the record of an earlier run is put back.
 FinishedRun run_job(const Job& job, const RunObserver& observer = {}, const RunOptions& options = {});
 

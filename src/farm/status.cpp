@@ -115,15 +115,19 @@ TaskStatus observe_run(const FarmPlan& plan, const std::string& name, const std:
   const bool has_record = fs::exists(record_path, missing);
   // A task that was refused for other inputs has left the files of those before it as they were.
   const bool has_failed = task.exit_code.value_or(0) != 0 && task.exit_code != 4;
-  if (is_locked(record_path)) {
+  const std::optional<bool> locked = is_locked(record_path);
+  if (locked.value_or(false)) {
     task.state = TaskState::running;
   } else if (has_failed) {
     task.state = TaskState::failed;
   } else if (has_record && is_whole && state_in(record_path) == "done") {
     task.state = TaskState::done;
   } else if (has_record) {
-    // Ended in order, or without a word, or some of its files are damaged since.
-    task.state = state_in(record_path) == "interrupted" ? TaskState::interrupted : TaskState::failed;
+    // Ended in order, or without a word, or some of its files are damaged since. Where nothing can be locked it may
+    // also run.
+    task.state = state_in(record_path) == "interrupted" ? TaskState::interrupted
+                 : locked                               ? TaskState::failed
+                                                        : TaskState::unknown;
   }
   return task;
 }
@@ -226,6 +230,8 @@ const char* to_string(TaskState state) {
       return "interrupted";
     case TaskState::failed:
       return "failed";
+    case TaskState::unknown:
+      return "unknown";
     case TaskState::done:
       return "done";
   }

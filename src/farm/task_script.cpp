@@ -87,13 +87,22 @@ std::string limits(const FarmPlan& plan, std::int64_t time_s) {
   return plan.kind == FarmKind::sweep ? words : words + farm_engine(plan.engine).progress;
 }
 
+// A pattern of the pictures that lets a merge find the parts.
+std::string pattern_of(const std::string& run_name) {
+  std::string pattern;
+  for (const char letter : run_name.substr(run_name.rfind('/') + 1)) {
+    pattern += letter == '%' ? "%%" : std::string(1, letter);
+  }
+  return run_name.substr(0, run_name.rfind('/') + 1) + pattern + ".####";
+}
+
 std::string finish_words(const FarmPlan& plan) {
   if (plan.kind == FarmKind::sweep) {
     return fmt::format("{} sweep merge {} -o {}{}", program_words(plan), shell_word(plan.job_file),
                        shell_word(plan.run_folder), plan.confine ? " --confine" : "");
   }
   if (!plan.traces_first) {
-    return fmt::format("{} merge {} --overwrite", program_words(plan), shell_word(run_name_of(plan) + ".####"));
+    return fmt::format("{} merge {} --overwrite", program_words(plan), shell_word(pattern_of(run_name_of(plan))));
   }
   return fmt::format("{} render --config {} --stage finish --resume --checkpoint {} --checkpoint-every {}{}",
                      program_words(plan), shell_word(plan.job_file), shell_word(plan.checkpoint), kCheckpointEvery,

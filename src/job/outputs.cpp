@@ -13,6 +13,7 @@
 #include <set>
 #include <system_error>
 
+#include "core/picture_module.hpp"
 #include "gazetrace/checkpoint.hpp"
 #include "gazetrace/error.hpp"
 #include "job/changed_inputs.hpp"
@@ -154,6 +155,21 @@ void check_earlier_run(const PipelineSettings& settings, const std::vector<std::
   }
 }
 
+void refuse_existing(const PipelineSettings& settings, const std::vector<std::string>& files) {
+  if (settings.output.overwrite || settings.output.resume) {
+    return;
+  }
+  for (const std::string& path : files) {
+    if (fs::exists(path)) {
+      const bool is_record = path.ends_with(".json") || path.ends_with(".csv");
+      throw Error(ErrorKind::input, path, "this output exists already",
+                  is_record && !settings.is_part
+                      ? "give `overwrite`, `resume`, `chunk` for a part of a sequence, or another folder"
+                      : "give `overwrite`, `resume` or another name");
+    }
+  }
+}
+
 }  // namespace
 
 OutputSettings output_settings(const JobSettings& job) {
@@ -218,14 +234,27 @@ PipelineSettings pipeline_settings(const JobSettings& job) {
   return settings;
 }
 
+void make_output_folders(const ResolvedJob& resolved) {
+  const PipelineSettings& settings = resolved.pipeline;
+  const std::vector<std::string> files = output_files(settings, resolved.frames);
+  check_names_differ(settings, files, resolved.input_digests);
+  refuse_existing(settings, files);
+  for (const fs::path& folder : output_folders(settings.output, settings.checkpoint)) {
+    prove_writable(folder);
+  }
+}
+
 void prepare_outputs(const ResolvedJob& resolved) {
   const PipelineSettings& settings = resolved.pipeline;
   const std::vector<std::int32_t>& frames = resolved.frames;
-  check_names_differ(settings, output_files(settings, frames), resolved.input_digests);
+  const std::vector<std::string> files = output_files(settings, frames);
+  make_output_folders(resolved);
+  if (!settings.output.display.pattern.empty() && settings.stage != SequenceStage::trace) {
+    picture_module();  // where it is missing, before a frame is traced
+  }
   if (settings.output.resume) {
-    take_former_names(settings.output, output_files(settings, frames));
+    take_former_names(settings.output, files);
     check_earlier_run(settings, frames);
-    const std::vector<std::string> files = output_files(settings, frames);
     if (!settings.output.overwrite && !files.empty()) {
       refuse_to_lose_frames(resolved, files.front());
     }
@@ -235,22 +264,8 @@ void prepare_outputs(const ResolvedJob& resolved) {
   if (!settings.checkpoint.empty() && !settings.output.overwrite && !hands_over) {
     check_checkpoint_target(settings.checkpoint, settings.settings_digest, settings.output.resume);
   }
-  if (!settings.output.overwrite && !settings.output.resume) {
-    for (const std::string& path : output_files(settings, frames)) {
-      if (fs::exists(path)) {
-        const bool is_record = path.ends_with(".json") || path.ends_with(".csv");
-        throw Error(ErrorKind::input, path, "this output exists already",
-                    is_record && !settings.is_part
-                        ? "give `overwrite`, `resume`, `chunk` for a part of a sequence, or another folder"
-                        : "give `overwrite`, `resume` or another name");
-      }
-    }
-  }
-  for (const fs::path& folder : output_folders(settings.output, settings.checkpoint)) {
-    prove_writable(folder);
-  }
   write_down(resolved.chunk_borders);
-  for (const std::string& path : output_files(settings, frames)) {
+  for (const std::string& path : files) {
     if (const fs::path folder = fs::path(path).parent_path(); !folder.empty() && !fs::exists(folder)) {
       prove_writable(folder);  // a frame's own
     }

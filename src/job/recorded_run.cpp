@@ -57,7 +57,15 @@ std::vector<std::string> records_beside(const std::string& pattern) {
 
 std::optional<RecordedRun> find_recorded_run(const std::string& pattern, const std::string& settings_digest) {
   for (const std::string& path : records_beside(pattern)) {
-    const RunRecord record = read_run_record(path);
+    RunRecord record;
+    try {
+      record = read_run_record(path);
+    } catch (const Error&) {
+      if (path == run_record_file_name(run_name_of(pattern), "", false)) {
+        throw;
+      }
+      continue;  // damaged, and of other pictures by its name
+    }
     const auto& parts = record.part_digests;
     if (record.settings_digest != settings_digest &&
         std::find(parts.begin(), parts.end(), settings_digest) == parts.end()) {

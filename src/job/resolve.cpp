@@ -274,6 +274,9 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
     set_digests(resolved);
   }
   if (options.scope == ResolveScope::render) {
+    if (options.claim) {
+      options.claim(resolved);
+    }
     begin_with_history(resolved);
   }
   return resolved;

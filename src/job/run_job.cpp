@@ -30,13 +30,19 @@ AovsOfMemory take_aovs_of_memory(JobSettings& settings) {
   return aovs;
 }
 
-ResolvedJob resolve_run(const Job& job, const RunObserver& observer, const RunOptions& options) {
+// Claims the outputs on the way.
+ResolvedJob resolve_run(const Job& job, const RunObserver& observer, const RunOptions& options, OutputLock& lock) {
   if (job.settings.scene.empty() && options.loaded == nullptr) {
     throw Error(ErrorKind::usage, "", "no scene was given", "give `scene`");
   }
   ResolveOptions resolving;
   resolving.progress = observer.loading;
   resolving.loaded = options.loaded;
+  resolving.claim = [&](ResolvedJob& resolved) {
+    make_output_folders(resolved);
+    lock = lock_outputs(resolved.pipeline, resolved.frames);
+    resolved.warnings.insert(resolved.warnings.end(), lock.warnings().begin(), lock.warnings().end());
+  };
   if (!options.shows_frames) {
     return resolve(job, resolving);
   }
@@ -46,14 +52,6 @@ ResolvedJob resolve_run(const Job& job, const RunObserver& observer, const RunOp
   resolved.pipeline.trace.guides = resolved.pipeline.trace.guides || aovs.first_hits;
   resolved.pipeline.layers = aovs.layers;
   return resolved;
-}
-
-OutputLock claim_outputs(ResolvedJob& resolved) {
-  prepare_outputs(resolved);
-  OutputLock lock = lock_outputs(resolved.pipeline, resolved.frames);
-  prepare_outputs(resolved);  // another run may have made frames until then
-  resolved.warnings.insert(resolved.warnings.end(), lock.warnings().begin(), lock.warnings().end());
-  return lock;
 }
 
 SequenceResult render(ResolvedJob& resolved, PathTracer& tracer, const ColorPipeline& color,
@@ -83,8 +81,9 @@ FinishedRun run_job(const Job& job, const RunObserver& observer, const RunOption
   using Clock = std::chrono::steady_clock;
   const auto color = std::make_shared<ColorPipeline>(job.settings.color);
   FinishedRun run;
-  ResolvedJob& resolved = run.resolved = resolve_run(job, observer, options);
-  const OutputLock lock = claim_outputs(resolved);
+  OutputLock lock;
+  ResolvedJob& resolved = run.resolved = resolve_run(job, observer, options, lock);
+  prepare_outputs(resolved);
   const std::vector<std::string> files = output_files(resolved.pipeline, resolved.frames);
   if (observer.building_tree) {
     observer.building_tree();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads what the runs over parts left in a directory, and joins their records.
+// Reads what the runs over parts left in a directory.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -98,14 +98,6 @@ void check_one_sequence(const std::vector<RunPart>& parts) {
   }
 }
 
-void append_new(Warnings& to, const Warnings& from) {
-  for (const std::string& text : from) {
-    if (std::find(to.begin(), to.end(), text) == to.end()) {
-      to.push_back(text);
-    }
-  }
-}
-
 }  // namespace
 
 std::vector<RunPart> read_run_parts(const std::string& where) {
@@ -141,62 +133,6 @@ std::vector<RunPart> read_run_parts(const std::string& where) {
   check_one_sequence(parts);
   check_same_settings(parts);
   return parts;
-}
-
-RunRecord join_records(const std::vector<RunPart>& parts, const std::string& frames, Warnings& warnings) {
-  RunRecord whole = parts.front().record;
-  whole.is_part = false;
-  whole.chunk_file.clear();
-  whole.frames = frames;
-  whole.facts.clear();
-  whole.warnings.clear();
-  whole.bad_samples.clear();
-  whole.part_digests.clear();
-  whole.input_digests.clear();
-  whole.files.clear();
-  for (const RunPart& part : parts) {
-    const RunRecord& record = part.record;
-    append_new(whole.warnings, record.warnings);
-    whole.part_digests.push_back(record.settings_digest);
-    whole.files.insert(record.files.begin(), record.files.end());
-    whole.bad_samples.insert(whole.bad_samples.end(), record.bad_samples.begin(), record.bad_samples.end());
-    for (const auto& [path, digest] : record.input_digests) {
-      if (path != record.history.checkpoint) {
-        whole.input_digests.emplace(path, digest);
-      }
-    }
-    const auto same = [&](const char* what, const std::string& a, const std::string& b) {
-      if (a != b) {
-        append_new(warnings, {fmt::format("parts differ in {}: '{}' and '{}'", what, a, b)});
-      }
-    };
-    same("version", whole.version, record.version);
-    same("build", whole.build, record.build);
-    same("instruction set", whole.instruction_set, record.instruction_set);
-    same("ray library", whole.ray_library, record.ray_library);
-    // Other weights or loops make another picture, which would flicker from frame to frame.
-    if (whole.denoiser != record.denoiser) {
-      throw Error(ErrorKind::input, part.record_path,
-                  fmt::format("frames were denoised by '{}', those of {} by '{}'", record.denoiser,
-                              parts.front().record_path, whole.denoiser),
-                  "render them all with one library on one kind of processor");
-    }
-    for (const auto& [key, value] : record.facts) {
-      const bool shared = std::all_of(parts.begin(), parts.end(), [&, k = key, v = value](const RunPart& other) {
-        const auto it = other.record.facts.find(k);
-        return it != other.record.facts.end() && it->second == v;
-      });
-      whole.facts[shared ? key : fmt::format("{} of {}", key, record.frames)] = value;
-    }
-  }
-  append_new(whole.warnings, warnings);
-  const std::vector<std::string>& digests = whole.part_digests;
-  if (std::all_of(digests.begin(), digests.end(), [&](const std::string& d) { return d == digests.front(); })) {
-    whole.part_digests.clear();
-  }
-  std::stable_sort(whole.bad_samples.begin(), whole.bad_samples.end(),
-                   [](const BadSample& a, const BadSample& b) { return a.frame < b.frame; });
-  return whole;
 }
 
 }  // namespace gazetrace

@@ -46,9 +46,23 @@ struct FrameMean {
   bool is_finished = false;  // there is nothing to add to the mean that is there
 };
 
+std::vector<std::int32_t> find_frames_if_any(const std::string& pattern) {
+  try {
+    return find_frames(pattern);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 // By the numbers in the names; of a single picture 0.
 std::map<std::int32_t, FrameMean> frames_of(const MeanSettings& settings, Warnings& warnings) {
   std::map<std::int32_t, FrameMean> frames;
+  if (settings.resume) {
+    // All of a mean goes on, so that its frames stay alike.
+    for (const std::int32_t frame : find_frames_if_any(settings.output)) {
+      frames[frame].path = frame_file_name(settings.output, frame);
+    }
+  }
   for (const std::string& pattern : settings.renders) {
     for (const std::int32_t frame : find_frames(pattern)) {
       FrameMean& mean = frames[frame];
@@ -121,9 +135,13 @@ void check_frame(const MeanSettings& settings, FrameMean& mean) {
   mean.inputs = std::move(taken);
 }
 
-// The record of the first render that has one which is of its pictures.
-std::optional<RunRecord> record_of(const std::vector<std::string>& renders, std::int32_t frame) {
-  for (const std::string& pattern : renders) {
+// The record of the first render that has one which is of its pictures; of a mean that goes on, its own.
+std::optional<RunRecord> record_of(const MeanSettings& settings, std::int32_t frame) {
+  const std::string own = run_record_file_name(run_name_of(settings.output), "", false);
+  if (settings.resume && is_there(own)) {
+    return read_run_record(own);
+  }
+  for (const std::string& pattern : settings.renders) {
     const std::string path = run_record_file_name(run_name_of(pattern), "", false);
     if (!is_there(path)) {
       continue;
@@ -159,7 +177,13 @@ void write_record(RunRecord record, const MeanSettings& settings, const MergeRes
   record.frames = result.frames;
   record.is_part = false;
   record.chunk_file.clear();
-  record.facts["mean_of"] = fmt::format("{}", fmt::join(settings.renders, ", "));
+  std::string& mean_of = record.facts["mean_of"];
+  mean_of = settings.resume ? mean_of : std::string();
+  for (const std::string& pattern : settings.renders) {
+    if ((", " + mean_of + ", ").find(", " + pattern + ", ") == std::string::npos) {
+      mean_of += (mean_of.empty() ? "" : ", ") + pattern;
+    }
+  }
   record.warnings.insert(record.warnings.end(), result.warnings.begin(), result.warnings.end());
   record.files = std::move(files);
   write_text_atomically(run_record_file_name(run_name_of(settings.output), "", false), run_record_json(record));
@@ -189,7 +213,7 @@ MergeResult merge_means(const MeanSettings& settings) {
   if (most < 2 && !settings.resume) {
     throw Error(ErrorKind::usage, "", "a mean is of two renders or more", "name renders with different seeds");
   }
-  const std::optional<RunRecord> record = record_of(settings.renders, frames.begin()->first);
+  const std::optional<RunRecord> record = record_of(settings, frames.begin()->first);
   WrittenFiles files;
   std::vector<std::string> digests;
   for (const auto& [number, mean] : frames) {

@@ -78,6 +78,11 @@ class CompareParts(harness.CliTest):
             self.render("parts", "--frames", frames, "--chunk", "1/1")
         self.run_ok("merge", "parts")
         self.assertIn("fovea to 2 deg", self.compare("ref", "parts")["conditions"]["regions"])
+        # Others may lie beside it, damaged ones, too.
+        (self.folder / "parts/p.run.json").rename(self.folder / "parts/z.run.json")
+        self.write("parts/a.run.json", "{")
+        self.assertIn("fovea to 2 deg", self.compare("ref", "parts")["conditions"]["regions"])
+        (self.folder / "parts/z.run.json").rename(self.folder / "parts/p.run.json")
         self.render("other", "--frames", "1-4", "--region-eccentricities", "3,6")
         for name, content in self.pictures("other").items():
             (self.folder / "parts" / name).write_bytes(content)

@@ -216,6 +216,11 @@ class Engines(FarmFiles):
         self.assertEqual([task["state"] for task in status["tasks"]], ["done"] * 5)
         self.assertIn("nothing to do", self.run_ok("farm", "retry", "out").stderr)
 
+    def test_a_name_with_a_percent_sign(self):
+        self.write("percent.toml", FARM_TOML.replace("out/f.####", "out/90%%.####"))
+        self.assertIn("6 of 6 frames are rendered", self.farm("--chunks", "2", job="percent.toml").stdout)
+        self.assertIn("90%.run.json", self.files("out"))
+
     def test_local_where_the_caller_ignores_what_becomes_of_its_children(self):
         done = subprocess.run([harness.PROGRAM, "farm", "farm.toml", "--chunks", "2", "--processes", "2", "--threads", "1"],
                               cwd=self.folder, capture_output=True, text=True, check=False,

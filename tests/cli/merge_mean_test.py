@@ -102,6 +102,21 @@ class MergeMean(harness.CliTest):
             self.assert_is_mean(self.exr("mean-of-mean", frame), [*parts, self.exr("s5", frame)], units=3)
             self.assertEqual(self.exr("grown", frame).text("gazetrace:mean_of"), "1:1 2:2 4:4")
 
+    def test_a_mean_that_goes_on_keeps_its_frames_alike(self):
+        options = [*UNIFORM, "--spp", "1"]
+        renders = [self.render(f"s{seed}", seed, *options) for seed in (1, 2)]
+        short = self.render("short", 3, *options, frames="9")
+        self.merge("mean", renders)
+        before = {path.name: path.read_bytes() for path in (self.folder / "mean").iterdir()}
+        self.assert_refused(["merge", "--mean", short, "-o", "mean/f.####.exr", "--resume"], ["lack frames 10", "--allow-missing"])
+        self.assertEqual({path.name: path.read_bytes() for path in (self.folder / "mean").iterdir()}, before)
+        self.merge("mean", [short], "--resume", "--allow-missing")
+        record = json.loads((self.folder / "mean/f.run.json").read_text())
+        self.assertEqual(record["frames"], "9-10")
+        self.assertEqual(sorted(record["files"]), ["f.0009.exr", "f.0010.exr"])
+        self.assertEqual(record["facts"]["mean_of"], ", ".join([*renders, short]))
+        self.assertEqual([self.exr("mean", frame).text("gazetrace:mean_of") for frame in (9, 10)], ["1:1 2:1 3:1", "1:1 2:1"])
+
     def test_parts_of_a_file_and_packed_halves(self):
         options = [*UNIFORM, "--spp", "2", "--aov", "depth,samples,crypto_object", "--exr-parts", "multi", "--exr-pixels",
                    "half", "--exr-compression", "dwaa"]
@@ -148,6 +163,8 @@ class MergeMean(harness.CliTest):
         beside = a.replace(".####", "_####")  # a record of the same name
         self.assert_refused(["merge", "--mean", a, b, "-o", beside, "--overwrite"], ["record of a render"])
         self.assert_refused(["merge", "--mean", b, "-o", a, "--resume"], ["is a render"])
+        for idle in (["--threads", "2"], ["--trust-files"]):
+            self.assert_refused(["merge", "--mean", a, b, "-o", "out/f.####.exr", *idle], ["leave out", idle[0]])
         self.assert_refused(["merge", "a", "b"], ["--mean"])
         self.assertIn("lack frames 10", self.merge("some", [a, short], "--allow-missing").stderr)
         self.assertEqual(self.exr("some", 10).text("gazetrace:mean_of"), "1:2")

@@ -3,6 +3,7 @@
 
 import ctypes
 import errno
+import json
 import os
 import platform
 import signal
@@ -14,6 +15,7 @@ from pathlib import Path
 
 import harness
 from farm_faults_test import JOB, Running, outputs
+from farm_test import FARM_TOML
 
 # A list of processes of its own, as in containers and on other machines: nothing can be asked of the other run.
 NAMESPACE = ["unshare", "--pid", "--fork", "--mount-proc", "--kill-child"]
@@ -83,6 +85,24 @@ class Locks(Running):
         self.assertIsNone(first.poll(), "it was to run all the while")
         self.assert_refused([*job, *self.SLOW, "--chunk", "1/2", "--resume"], [f"process {first.pid} on"], 3)
 
+    def test_a_merge_writes_no_record_that_is_a_run_s(self):
+        for frame in ("5", "6"):
+            self.run_ok("render", *JOB, "-o", "a/f.####.exr", "--frames", frame, "--chunk", "1/1")
+        first = self.begin()
+        record = (self.folder / "a/f.run.json").read_bytes()
+        self.assert_refused(["merge", "a", "--overwrite"], ["another run is writing", f"process {first.pid} on"], 3)
+        self.assertEqual((self.folder / "a/f.run.json").read_bytes(), record)
+
+    def test_nothing_of_a_run_is_read_or_renamed_before_it_ends(self):
+        self.run_ok("render", *JOB, "-o", "c/g.####.exr", "--frames", "3")
+        for name in ("run.json", "timing.csv"):  # as the version before named them
+            (self.folder / "c" / f"g.{name}").rename(self.folder / "c" / name)
+        self.OUTPUTS = [*self.OUTPUTS, "--accumulate", "running", "--checkpoint", "b/history"]
+        self.begin()
+        self.refused(["-o", "c/g.####.exr", "-o", "b/f.####.png"], ["f.0003.png"], "--resume")
+        self.write("b/history", "half of it")
+        self.refused(["-o", "d/f.####.exr", *self.OUTPUTS[4:]], ["history"], "--resume-from", "b/history")
+
     def test_a_killed_run_holds_up_nobody(self):
         first = self.begin()
         first.send_signal(signal.SIGKILL)
@@ -121,6 +141,20 @@ class Locks(Running):
         said = [line for line in result.stderr.splitlines() if "no files can be locked" in line]
         self.assertEqual(len(said), 2, result.stderr)
         self.assertEqual(sorted(self.pictures("a")), ["f.0001.exr", "f.0002.exr"])
+
+    def test_what_cannot_be_known_without_locks(self):
+        self.write("farm.toml", FARM_TOML)
+        self.run_ok("farm", "farm.toml", "--chunks", "2")
+        [record] = (self.folder / "out").glob("f.run.1-*.json")
+        record.write_text(record.read_text().replace('"state": "done"', '"state": "running"'))
+        for name in ("f.0001.exr", "farm/tasks/1.exit"):
+            (self.folder / "out" / name).unlink()
+        for prepare, state in ((None, "failed"), (without_locks, "unknown")):
+            told = subprocess.run([harness.PROGRAM, "farm", "status", "out", "--json"], cwd=self.folder, capture_output=True, text=True,
+                                  preexec_fn=prepare, check=False)
+            if told.returncode == 77:
+                self.skipTest("system calls cannot be filtered here")
+            self.assertEqual(json.loads(told.stdout)["tasks"][0]["state"], state, told.stderr)
 
     def test_folders_of_any_name(self):
         self.run_ok("render", *JOB, "-o", "f.####.exr", "-o", "./g.####.png", "--frames", "1")

@@ -43,6 +43,10 @@ MergeResult run_merge_means(const MergeArguments& arguments, const std::vector<s
   if (arguments.output.empty()) {
     throw Error(ErrorKind::usage, "--mean", "needs a name for the pictures", "add --output mean.####.exr");
   }
+  if (arguments.threads > 0 || arguments.trust_files) {
+    throw Error(ErrorKind::usage, "--mean", "reads one picture after the other, and compares none with a record",
+                "leave out --threads and --trust-files");
+  }
   return merge_means({arguments.inputs, arguments.output, command_line, arguments.allow_missing, arguments.overwrite,
                       arguments.resume});
 }

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "gazetrace/output.hpp"
+#include "gazetrace/output_lock.hpp"
 #include "output/history_chain.hpp"
 
 namespace gazetrace {
@@ -125,6 +126,71 @@ void leave_out(const std::vector<BadFile>& bad, std::vector<RunPart>& parts, War
   }
 }
 
+void append_new(Warnings& to, const Warnings& from) {
+  for (const std::string& text : from) {
+    if (std::find(to.begin(), to.end(), text) == to.end()) {
+      to.push_back(text);
+    }
+  }
+}
+
+// The record of the whole run. Where the parts differ, the record lists what each says, or a warning is added.
+RunRecord join_records(const std::vector<RunPart>& parts, const std::string& frames, Warnings& warnings) {
+  RunRecord whole = parts.front().record;
+  whole.is_part = false;
+  whole.chunk_file.clear();
+  whole.frames = frames;
+  whole.facts.clear();
+  whole.warnings.clear();
+  whole.bad_samples.clear();
+  whole.part_digests.clear();
+  whole.input_digests.clear();
+  whole.files.clear();
+  for (const RunPart& part : parts) {
+    const RunRecord& record = part.record;
+    append_new(whole.warnings, record.warnings);
+    whole.part_digests.push_back(record.settings_digest);
+    whole.files.insert(record.files.begin(), record.files.end());
+    whole.bad_samples.insert(whole.bad_samples.end(), record.bad_samples.begin(), record.bad_samples.end());
+    for (const auto& [path, digest] : record.input_digests) {
+      if (path != record.history.checkpoint) {
+        whole.input_digests.emplace(path, digest);
+      }
+    }
+    const auto same = [&](const char* what, const std::string& a, const std::string& b) {
+      if (a != b) {
+        append_new(warnings, {fmt::format("parts differ in {}: '{}' and '{}'", what, a, b)});
+      }
+    };
+    same("version", whole.version, record.version);
+    same("build", whole.build, record.build);
+    same("instruction set", whole.instruction_set, record.instruction_set);
+    same("ray library", whole.ray_library, record.ray_library);
+    // Other weights or loops make another picture, which would flicker from frame to frame.
+    if (whole.denoiser != record.denoiser) {
+      throw Error(ErrorKind::input, part.record_path,
+                  fmt::format("frames were denoised by '{}', those of {} by '{}'", record.denoiser,
+                              parts.front().record_path, whole.denoiser),
+                  "render them all with one library on one kind of processor");
+    }
+    for (const auto& [key, value] : record.facts) {
+      const bool shared = std::all_of(parts.begin(), parts.end(), [&, k = key, v = value](const RunPart& other) {
+        const auto it = other.record.facts.find(k);
+        return it != other.record.facts.end() && it->second == v;
+      });
+      whole.facts[shared ? key : fmt::format("{} of {}", key, record.frames)] = value;
+    }
+  }
+  append_new(whole.warnings, warnings);
+  const std::vector<std::string>& digests = whole.part_digests;
+  if (std::all_of(digests.begin(), digests.end(), [&](const std::string& d) { return d == digests.front(); })) {
+    whole.part_digests.clear();
+  }
+  std::stable_sort(whole.bad_samples.begin(), whole.bad_samples.end(),
+                   [](const BadSample& a, const BadSample& b) { return a.frame < b.frame; });
+  return whole;
+}
+
 }  // namespace
 
 MergeResult merge_runs(const std::string& where, const MergeOptions& options) {
@@ -132,6 +198,7 @@ MergeResult merge_runs(const std::string& where, const MergeOptions& options) {
   const std::string directory = folder_of_run(parts.front().run_name);
   const std::string timing_path = timing_file_name(parts.front().run_name, "", false);
   const std::string record_path = run_record_file_name(parts.front().run_name, "", false);
+  const OutputLock lock = lock_files({{directory, {timing_path, record_path}}});
   for (const std::string& path : {timing_path, record_path}) {
     if (!options.overwrite && std::filesystem::exists(path)) {
       throw Error(ErrorKind::usage, path, "exists already", "give `overwrite` to replace it");
@@ -139,6 +206,7 @@ MergeResult merge_runs(const std::string& where, const MergeOptions& options) {
   }
   refuse_traced_parts(parts);
   MergeResult result;
+  result.warnings = lock.warnings();
   if (!options.trust_files) {
     const std::vector<BadFile> bad = find_bad_files(parts, options.threads);
     if (!options.allow_missing) {
