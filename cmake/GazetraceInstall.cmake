@@ -5,7 +5,6 @@ include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/gazetrace)
 
 install(TARGETS gazetrace EXPORT gazetraceTargets)
-install(TARGETS gazetrace_pictures LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 if(TARGET gazetrace_cli)
   install(TARGETS gazetrace_cli)
   set(shell_dir ${PROJECT_BINARY_DIR}/shell)

@@ -29,8 +29,11 @@ foreach(header core/picture_module.hpp core/image_io.hpp)
 endforeach()
 set_property(SOURCE core/open_image_io.cpp core/picture_module.cpp APPEND PROPERTY
   COMPILE_DEFINITIONS GAZETRACE_PICTURE_MODULE_BUILD="${build}")
-set_property(SOURCE core/picture_module.cpp APPEND PROPERTY
-  COMPILE_DEFINITIONS GAZETRACE_LIBRARY_DIR="${CMAKE_INSTALL_FULL_LIBDIR}")
+file(RELATIVE_PATH bin_to_lib /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
+set_property(SOURCE core/picture_module.cpp APPEND PROPERTY COMPILE_DEFINITIONS
+  GAZETRACE_LIBRARY_DIR="${CMAKE_INSTALL_FULL_LIBDIR}" GAZETRACE_LIBRARY_FOLDER="${bin_to_lib}")
+# Of a program, too, whose project has the library as a part of itself and installs nothing else of it.
+install(TARGETS gazetrace_pictures LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
 # Whatever links the library looks for the module where it was built or installed; program and Python package, which are
 # installed with it and moved, look beside themselves and have INSTALL_RPATH. As an old kind of tag, since sanitizers open

@@ -2,6 +2,12 @@
 #include "core/picture_module.hpp"
 
 #include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
 
 #include "gazetrace/error.hpp"
 
@@ -10,33 +16,39 @@ namespace {
 
 constexpr const char* kFile = "libgazetrace_pictures.so";
 
-[[noreturn]] void fail(const std::string& problem) {
-  throw Error(ErrorKind::runtime, kFile, "the module that reads and writes PNG, JPEG and other pictures " + problem,
-              "install gazetrace again, with its libraries");
-}
-
-// By the search path that whoever links the library has from CMake (src/CMakeLists.txt), then where it was to be
-// installed.
-void* open_library() {
-  if (void* const found = ::dlopen(kFile, RTLD_LAZY | RTLD_LOCAL)) {
-    return found;
+// By the search path that whoever links the library has from CMake (src/CMakeLists.txt); LD_LIBRARY_PATH, which comes
+// before that path, may hold another's. So also beside the program or the Python package, in their library folder, and
+// where it was to be installed.
+std::vector<std::string> places() {
+  std::error_code ignored;
+  Dl_info info{};
+  const bool is_known = ::dladdr(reinterpret_cast<void*>(&picture_module), &info) != 0;
+  std::filesystem::path own = is_known ? info.dli_fname : "";
+  if (!own.is_absolute()) {  // a program as it was called
+    own = std::filesystem::read_symlink("/proc/self/exe", ignored);
   }
-  const std::string problem = ::dlerror();
-  if (void* const found = ::dlopen((std::string(GAZETRACE_LIBRARY_DIR "/") + kFile).c_str(), RTLD_LAZY | RTLD_LOCAL)) {
-    return found;
-  }
-  fail("cannot be loaded: " + problem);
+  const std::filesystem::path folder = own.parent_path();
+  return {kFile, folder / kFile, folder / GAZETRACE_LIBRARY_FOLDER / kFile,
+          std::string(GAZETRACE_LIBRARY_DIR "/") + kFile};
 }
 
 const PictureModule& load() {
-  void* const library = open_library();
   // Of C, so that a module of any build answers.
   using Entry = const PictureModule* (*)();
-  const auto entry = reinterpret_cast<Entry>(::dlsym(library, "gazetrace_picture_module"));
-  if (entry == nullptr || std::string(entry()->build) != GAZETRACE_PICTURE_MODULE_BUILD) {
-    fail("is that of another build of gazetrace");
+  std::vector<std::string> problems;
+  for (const std::string& place : places()) {
+    void* const library = ::dlopen(place.c_str(), RTLD_LAZY | RTLD_LOCAL);
+    const auto entry =
+        library == nullptr ? nullptr : reinterpret_cast<Entry>(::dlsym(library, "gazetrace_picture_module"));
+    if (entry != nullptr && std::string(entry()->build) == GAZETRACE_PICTURE_MODULE_BUILD) {
+      return *entry();
+    }
+    problems.push_back(library == nullptr ? ::dlerror() : place + " is that of another build of gazetrace");
   }
-  return *entry();
+  throw Error(ErrorKind::runtime, kFile,
+              fmt::format("the module that reads and writes PNG, JPEG and other pictures cannot be loaded: {}",
+                          fmt::join(problems, "; ")),
+              "install gazetrace again, with its libraries");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import unittest
+from pathlib import Path
 
 import harness
 
@@ -31,6 +32,29 @@ class Talk(harness.CliTest):
             self.write(library, "no library")
         done = subprocess.run([harness.PROGRAM, "version"], cwd=self.folder, capture_output=True, text=True, check=False)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    RENDER = ["render", "box.gltf", "--size", "64x36", "--spp", "1", "-o", "f.png", "--quiet"]
+
+    def test_a_picture_ends_a_run_in_order(self):
+        """With the module of pictures loaded, whose libraries have threads; most tests' runs are forks, which end at once."""
+        self.run_ok(*self.RENDER, alone=True)
+
+    def test_a_module_of_another_build_is_passed_over(self):
+        module = Path(harness.PROGRAM).parent / "../lib/libgazetrace_pictures.so"
+        other, count = re.subn(rb"-[0-9a-f]{64}-[0-9a-f]{64}", b"-" + b"0" * 129, module.read_bytes())
+        self.assertEqual(count, 1)
+        self.write("other/libgazetrace_pictures.so", other)
+        self.run_ok(*self.RENDER, alone=True, environment={"LD_LIBRARY_PATH": str(self.folder / "other")})
+
+    def test_a_module_that_is_missing_is_told_of_before_a_frame(self):
+        (self.folder / "bin").mkdir()
+        alone = shutil.copy(harness.PROGRAM, self.folder / "bin/gazetrace")
+        before = self.files()
+        done = subprocess.run([alone, *self.RENDER], cwd=self.folder, capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        self.assertGreaterEqual(done.stderr.count("cannot open shared object file"), 3, "every place is told")
+        self.assertEqual(self.files(), before)
 
     def test_the_demo_makes_and_names_its_files(self):
         arguments = ["demo", "show", "--data", harness.SOURCE, "--size", "64x36", "--frames", "1-2", "--no-sweep"]
