@@ -7,12 +7,14 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfPixelType.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <system_error>
 
 #include "gazetrace/error.hpp"
@@ -41,6 +43,12 @@ class MemoryStream final : public Imf::IStream {
   std::uint64_t at_ = 0;
 };
 
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char letter) { return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter + 32) : letter; });
+  return text;
+}
+
 std::uint64_t pixels_of(const Imath::Box2i& window) {
   return static_cast<std::uint64_t>(std::int64_t{window.max.x} - window.min.x + 1) *
          static_cast<std::uint64_t>(std::int64_t{window.max.y} - window.min.y + 1);
@@ -53,9 +61,9 @@ std::uint64_t size_of(const PictureSource& source) {
   return ignored ? 0 : bytes;
 }
 
-// The pixels are only the claim of a header of a few bytes. Of black pictures a byte holds up to 170 pixels where the
-// compression is lossless, and up to 2700 where it is dwaa or dwab. A crop may be of any size within its picture.
-void check_windows(const Imf::Header& header, std::uint64_t bytes, const std::string& place) {
+}  // namespace
+
+void check_exr_windows(const Imf::Header& header, std::uint64_t bytes, const std::string& place) {
   constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 30U;
   constexpr std::uint64_t kPixelsOfAnyFile = std::uint64_t{1} << 20U;
   const bool is_dwa = header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION;
@@ -74,6 +82,16 @@ void check_windows(const Imf::Header& header, std::uint64_t bytes, const std::st
   }
   if (!header.dataWindow().intersects(header.displayWindow())) {
     throw Error(ErrorKind::input, place, "all data of the EXR lie outside its display window", "export it again");
+  }
+}
+
+namespace {
+
+// Of a deep file OpenEXR would lay each pixel's samples over each other.
+void check_flat(const Imf::Header& header, const std::string& place) {
+  if (header.hasType() && Imf::isDeepData(header.type())) {
+    throw Error(ErrorKind::input, place, "a deep EXR (" + header.type() + ") has several values for a pixel",
+                "flatten it");
   }
 }
 
@@ -108,7 +126,8 @@ ExrReader::ExrReader(const PictureSource& source, const std::string& place)
     throw Error(ErrorKind::input, place, std::string("cannot read the EXR: ") + e.what());
   }
   const Imf::Header& header = file_->input->header();
-  check_windows(header, size_of(source), place);
+  check_flat(header, place);
+  check_exr_windows(header, size_of(source), place);
   const Imath::Box2i& window = header.displayWindow();
   format = "openexr";
   width_px = window.max.x - window.min.x + 1;
@@ -130,36 +149,58 @@ bool ExrReader::has(const std::string& name) const {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-void ExrReader::choose_light() {
-  const auto is_color = [&](const std::string& layer) {
-    return has(layer + "R") && has(layer + "G") && has(layer + "B");
-  };
-  std::vector<std::string> layers;  // with their dot
+std::vector<std::string> ExrReader::color_of(const std::string& layer) const {
+  for (const char* const letters : {"RGBA", "rgba"}) {
+    std::vector<std::string> color;
+    for (const char* letter = letters; *letter != 0 && has(layer + *letter); ++letter) {
+      color.push_back(layer + *letter);
+    }
+    if (color.size() >= 3) {
+      return color;
+    }
+  }
+  return {};
+}
+
+// With their dots: the only one that has color, or of several those that their name says are what is seen.
+std::vector<std::string> ExrReader::layers_of_color() const {
+  std::vector<std::string> layers;
   for (const std::string& name : names) {
     const std::string layer = name.substr(0, name.rfind('.') + 1);
-    if (!layer.empty() && name == layer + "R" && is_color(layer)) {
+    if (!layer.empty() && !color_of(layer).empty() && name == color_of(layer).front()) {
       layers.push_back(layer);
     }
   }
+  for (const char* const usual : {"combined", "beauty", "rgba"}) {
+    std::vector<std::string> seen;
+    std::copy_if(layers.begin(), layers.end(), std::back_inserter(seen), [&](const std::string& layer) {
+      return ("." + lower(layer)).ends_with("." + std::string(usual) + ".");
+    });
+    if (layers.size() > 1 && !seen.empty()) {
+      return seen;
+    }
+  }
+  return layers;
+}
+
+void ExrReader::choose_light() {
   const auto alone = [&](const char* name, const std::vector<const char*>& others) {
     return has(name) && std::none_of(others.begin(), others.end(), [&](const char* other) { return has(other); });
   };
-  std::string layer;
-  if (is_color("")) {
-    light_ = {"R", "G", "B"};
-  } else if (alone("Y", {"RY", "BY", "R", "G", "B", "X"})) {
-    light_ = {"Y"};
-  } else if (alone("R", {"G", "B", "Y"})) {
-    light_ = {"R"};
-  } else if (layers.size() == 1) {
-    layer = layers.front();
-    light_ = {layer + "R", layer + "G", layer + "B"};
-  } else {
-    throw Error(ErrorKind::input, place_, "the EXR has the channels " + joined(names) + ", none of which are its light",
-                "name a picture with R, G and B, or with Y or R alone, which is grey");
+  const std::vector<std::string> layers = layers_of_color();
+  light_ = color_of("");
+  if (light_.empty() && (alone("Y", {"RY", "BY", "R", "G", "B", "X"}) || alone("R", {"G", "B", "Y"}))) {
+    light_ = {has("Y") ? "Y" : "R"};
+    if (has("A")) {
+      light_.emplace_back("A");
+    }
+  } else if (light_.empty() && layers.size() == 1) {
+    light_ = color_of(layers.front());
   }
-  if (has(layer + "A")) {
-    light_.push_back(layer + "A");
+  if (light_.empty()) {
+    throw Error(ErrorKind::input, place_, "the EXR has the channels " + joined(names) + ", none of which are its light",
+                "name a picture with R, G and B, of which one layer is the only one or is called Combined, beauty or "
+                "rgba, or with Y or R alone, which is grey");
   }
   channels = static_cast<int>(light_.size());
 }
@@ -181,6 +222,15 @@ std::string ExrReader::read(std::span<const std::string> wanted, std::span<float
   // One line at a time, which all lines share; OpenEXR keeps the block that it has unpacked for the next.
   std::vector<float> line(static_cast<std::size_t>(data.max.x - data.min.x + 1) * step);
   std::fill(values.begin(), values.end(), 0.0F);
+  for (const std::string& name : wanted) {
+    const Imf::Channel& channel = file_->input->header().channels()[name];
+    if (channel.xSampling != 1 || channel.ySampling != 1) {
+      throw Error(ErrorKind::input, place_,
+                  "the EXR's channel " + bounded(name, 40) + " is subsampled, " + std::to_string(channel.xSampling) +
+                      " x " + std::to_string(channel.ySampling) + " pixels a value",
+                  "write it with a value for each pixel");
+    }
+  }
   try {
     Imf::FrameBuffer buffer;
     for (std::size_t c = 0; c < step; ++c) {

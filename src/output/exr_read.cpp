@@ -10,8 +10,6 @@
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfRationalAttribute.h>
 #include <OpenEXR/ImfStringAttribute.h>
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -29,35 +27,15 @@
 namespace gazetrace {
 namespace {
 
-// The pixels are only the claim of a header of a few bytes. Of black pictures a byte holds up to 170 pixels where the
-// compression is lossless, and up to 2700 where it is dwaa or dwab.
-void check_size(const Imf::Header& header, const std::string& path) {
-  constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 30U;
-  constexpr std::uint64_t kPixelsOfAnyFile = std::uint64_t{1} << 20U;
-  const Imath::Box2i window = header.dataWindow();
-  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  const bool is_dwa = header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION;
-  std::error_code ignored;
-  const std::uint64_t bytes = std::filesystem::file_size(path, ignored);
-  const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-  if (pixels > kMostPixels || ignored || pixels > kPixelsOfAnyFile + (is_dwa ? 8192 : 1024) * bytes) {
-    throw Error(ErrorKind::input, path,
-                fmt::format("an EXR of {} x {} pixels and {} bytes cannot be used", width, height, bytes),
-                pixels > kMostPixels ? "make it smaller" : "it is damaged: export it again");
-  }
-}
-
-// Opens an EXR and gives what `read` makes of it; what OpenEXR throws becomes Error(input).
-template <class File, class Read>
+// What `read` makes of an EXR; what OpenEXR throws becomes Error(input).
+template <class Read>
 auto read_exr(const std::string& path, const Read& read) {
   if (!std::filesystem::exists(path)) {
     throw Error(ErrorKind::input, path, "there is no such file");
   }
   try {
     check_exr_header(path, path);
-    File file(path.c_str(), 0);
-    return read(file);
+    return read();
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -79,43 +57,40 @@ std::string gray_channel(const std::vector<std::string>& names) {
   return {};
 }
 
-ExrReader open_exr(const std::string& path) {
-  if (!std::filesystem::exists(path)) {
-    throw Error(ErrorKind::input, path, "there is no such file");
-  }
-  check_exr_header(path, path);
-  return ExrReader({"openexr", path, {}, false, false}, path);
-}
-
 }  // namespace
 
 ImageRgb read_exr_rgb(const std::string& path) {
-  ExrReader reader = open_exr(path);
-  reader.choose_light();
-  return read_rgb(reader, path);
+  return read_exr(path, [&] {
+    ExrReader reader({"openexr", path, {}, false, false}, path);
+    reader.choose_light();
+    return read_rgb(reader, path);
+  });
 }
 
 ImageGray read_exr_gray(const std::string& path) {
-  ExrReader reader = open_exr(path);
-  const std::string name = gray_channel(reader.names);
-  if (name.empty()) {
-    throw Error(ErrorKind::input, path, "the EXR has several channels, and none of them is Y, samples_per_pixel or R",
-                "write a picture of one channel");
-  }
-  ImageGray image(reader.width_px, reader.height_px);
-  if (const std::string problem = reader.read({&name, 1}, image.pixels); !problem.empty()) {
-    throw Error(ErrorKind::input, path, "cannot read the EXR: " + problem);
-  }
-  return image;
+  return read_exr(path, [&] {
+    ExrReader reader({"openexr", path, {}, false, false}, path);
+    const std::string name = gray_channel(reader.names);
+    if (name.empty()) {
+      throw Error(ErrorKind::input, path, "the EXR has several channels, and none of them is Y, samples_per_pixel or R",
+                  "write a picture of one channel");
+    }
+    ImageGray image(reader.width_px, reader.height_px);
+    if (const std::string problem = reader.read({&name, 1}, image.pixels); !problem.empty()) {
+      throw Error(ErrorKind::input, path, "cannot read the EXR: " + problem);
+    }
+    return image;
+  });
 }
 
 std::vector<ExrLayers> read_exr_layers(const std::string& path) {
-  return read_exr<Imf::MultiPartInputFile>(path, [&](Imf::MultiPartInputFile& file) {
+  return read_exr(path, [&] {
+    Imf::MultiPartInputFile file(path.c_str(), 0);
     std::vector<ExrLayers> parts;
     for (int i = 0; i < file.parts(); ++i) {
       ExrLayers& part = parts.emplace_back();
       part.header = file.header(i);
-      check_size(part.header, path);
+      check_exr_windows(part.header, std::filesystem::file_size(path), path);
       const Imath::Box2i window = part.header.dataWindow();
       const int width = window.max.x - window.min.x + 1;
       const int height = window.max.y - window.min.y + 1;

@@ -7,14 +7,19 @@
 #include <gtest/gtest.h>
 
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDeepFrameBuffer.h>
+#include <OpenEXR/ImfDeepScanLineOutputFile.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
 
+#include <array>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <map>
 
 #include "core/image_io.hpp"
 #include "gazetrace/error.hpp"
@@ -160,6 +165,85 @@ TEST(ExrReader, ColorHasAnyOrderOfChannelsAndMayBeALayer) {
     EXPECT_EQ(load_environment(path).radiance(1, 1), expected);
     EXPECT_EQ(read_image_rgba(path, "a texture").floats[3], value_at(3, 0, 0));
   }
+}
+
+TEST(ExrReader, OfSeveralLayersTheOneThatIsSeenIsTaken) {
+  const TemporaryFolder folder;
+  const Imath::Box2i window = box(0, 0, 3, 1);
+  using Names = std::vector<std::string>;
+  for (const auto& names : std::vector<Names>{
+           {"r", "g", "b", "a", "N.R", "N.G", "N.B"},
+           {"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B", "ViewLayer.Combined.A",
+            "ViewLayer.DiffDir.R", "ViewLayer.DiffDir.G", "ViewLayer.DiffDir.B", "ViewLayer.Depth.Z"},
+           {"Beauty.r", "Beauty.g", "Beauty.b", "Beauty.a", "albedo.r", "albedo.g", "albedo.b"},
+           {"rgba.R", "rgba.G", "rgba.B", "rgba.A", "a.R", "a.G", "a.B"}}) {
+    const std::string path = write_exr((folder / "layers.exr"), window, window, names);
+    const Vec3f expected{value_at(0, 1, 1), value_at(1, 1, 1), value_at(2, 1, 1)};
+    EXPECT_EQ(read_exr_rgb(path)(1, 1), expected) << names[0];
+    EXPECT_EQ(read_image_rgba(path, "a texture").floats[3], value_at(3, 0, 0)) << names[0];
+  }
+  const std::string two =
+      write_exr((folder / "two.exr"), window, window,
+                {"A.Combined.R", "A.Combined.G", "A.Combined.B", "B.Combined.R", "B.Combined.G", "B.Combined.B"});
+  EXPECT_THROW(static_cast<void>(read_exr_rgb(two)), Error);
+}
+
+// The message of the refusal.
+std::string refusal(const std::function<void()>& read) {
+  try {
+    read();
+    return "nothing was refused";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), ErrorKind::input) << e.what();
+    return e.what();
+  }
+}
+
+TEST(ExrReader, DeepAndSubsampledFilesAreRefusedByTheirKind) {
+  const TemporaryFolder folder;
+  const std::string deep = folder / "deep.exr";
+  {
+    Imf::Header header(2, 1);
+    header.setType(Imf::DEEPSCANLINE);
+    header.compression() = Imf::NO_COMPRESSION;
+    for (const std::string& name : kRgb) {
+      header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    }
+    std::array<unsigned, 2> counts{1, 1};
+    float value = 1;
+    std::array<float*, 2> samples{&value, &value};
+    Imf::DeepFrameBuffer buffer;
+    buffer.insertSampleCountSlice(
+        Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()), sizeof(unsigned), 2 * sizeof(unsigned)));
+    for (const std::string& name : kRgb) {
+      buffer.insert(name, Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(samples.data()), sizeof(float*),
+                                         2 * sizeof(float*), sizeof(float)));
+    }
+    Imf::DeepScanLineOutputFile file(deep.c_str(), header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(1);
+  }
+  const std::string subsampled = folder / "subsampled.exr";
+  {
+    Imf::Header header(4, 2);
+    std::array<float, 8> values{};
+    Imf::FrameBuffer buffer;
+    for (const auto& [name, step] : std::map<std::string, int>{{"R", 1}, {"G", 1}, {"B", 2}}) {
+      header.channels().insert(name, Imf::Channel(Imf::FLOAT, step, step));
+      buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), sizeof(float),
+                                     4 * sizeof(float), step, step));
+    }
+    Imf::OutputFile file(subsampled.c_str(), header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(2);
+  }
+  for (const auto& [path, words] :
+       std::map<std::string, std::string>{{deep, "deepscanline"}, {subsampled, "B is subsampled"}}) {
+    EXPECT_THAT(refusal([&] { static_cast<void>(read_exr_rgb(path)); }), HasSubstr(words));
+    EXPECT_THAT(refusal([&] { static_cast<void>(load_environment(path)); }), HasSubstr(words));
+    EXPECT_THAT(refusal([&] { static_cast<void>(read_image_rgba(path, "a texture")); }), HasSubstr(words));
+  }
+  EXPECT_THAT(refusal([&] { static_cast<void>(read_exr_gray(deep)); }), HasSubstr("deepscanline"));
 }
 
 TEST(ExrReader, WhatIsNoLightIsRefusedByItsChannels) {
