@@ -45,7 +45,7 @@ std::vector<double> angular_speed_deg_s(const GazeDirections& gaze, std::int64_t
 
 // Thresholds of all methods. The comment at each threshold names the methods that use it.
 struct EventSettings {
-  std::string method = "ivt";  // a name of `event_methods()`: the algorithm
+  std::string method = "ivt";  // the algorithm: ivt, idt, adaptive, ivdt or ek
   GazeSpace space = GazeSpace::head;
   // ivt: a sample slower than this belongs to a fixation. Olsen 2012.
   double velocity_deg_s = 30;                    // and ivdt
@@ -77,11 +77,6 @@ struct EventSettings {
   // et al. 2024). Both 0: only what the log calls a blink is one.
   std::int64_t min_blink_ns = 50'000'000, max_blink_ns = 500'000'000;
 };
-
-struct EventMethodInfo {
-  std::string name, description;
-};
-std::vector<EventMethodInfo> event_methods();
 
 // A method with constants for one kind of device.
 struct EventPreset {

@@ -115,13 +115,6 @@ struct GazeFormatInfo {
 };
 std::vector<GazeFormatInfo> gaze_formats();
 
-// A format, and how certain it is by its content, 0..1. Lists begin with the most certain, and leave out those at 0.
-struct GazeFormatGuess {
-  std::string name;
-  double confidence = 0;
-};
-std::vector<GazeFormatGuess> sniff_gaze_format(const std::string& path);
-
 // Reads a log, also one that is packed by gzip, or the recording in a folder. Error(input) with file:line for a file of
 // several recordings of which none is chosen, for a log without times or without samples, for stamps that are out of
 // order or repeated (unless sorting was asked for: then the last row of equal stamps is kept, and a warning counts the

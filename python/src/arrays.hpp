@@ -81,13 +81,4 @@ inline ImageRgb rgb_of(const Floats& array, const std::string& what) {
   return image;
 }
 
-inline ImageGray gray_of(const Floats& array, const std::string& what) {
-  if (array.ndim() != 2) {
-    throw Error(ErrorKind::usage, what, "is not an array of the shape (height, width)");
-  }
-  ImageGray image(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)));
-  std::copy_n(array.data(), array.size(), image.pixels.data());
-  return image;
-}
-
 }  // namespace gazetrace::python

@@ -42,10 +42,6 @@ std::string line_of(const Json& event) {
 
 }  // namespace
 
-bool is_json_progress(const std::string& progress) {
-  return descriptor_of(progress).has_value();
-}
-
 RunEvents::RunEvents(const std::string& progress) {
   const std::optional<int> descriptor = descriptor_of(progress);
   if (!descriptor) {

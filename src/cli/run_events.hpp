@@ -36,7 +36,4 @@ class RunEvents {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// Whether --progress has this value: "json", or "json:" and a number.
-bool is_json_progress(const std::string& progress);
-
 }  // namespace gazetrace

@@ -46,7 +46,7 @@ T value_at_rank(std::vector<T>& values, std::size_t rank) {
   return *at;
 }
 
-// The three below also change the order of the values. Of no values they are NaN, and 0 for whole numbers.
+// The two below also change the order of the values. Of no values they are NaN, and 0 for whole numbers.
 
 // The middle value; of an even count the larger of the middle two. (Mean of the middle two: nowhere in use.)
 template <typename T>
@@ -56,10 +56,6 @@ T upper_median(std::vector<T>& values) {
 template <typename T>
 T lower_quantile(std::vector<T>& values, double share) {
   return values.empty() ? std::numeric_limits<T>::quiet_NaN() : value_at_rank(values, lower_rank(share, values.size()));
-}
-template <typename T>
-T upper_quantile(std::vector<T>& values, double share) {
-  return values.empty() ? std::numeric_limits<T>::quiet_NaN() : value_at_rank(values, upper_rank(share, values.size()));
 }
 
 // Summed in the order of the values, then divided by their number; NaN of no values.
@@ -89,15 +85,6 @@ inline double standard_error(const std::vector<double>& values, double mean) {
   }
   const auto n = static_cast<double>(values.size());
   return std::sqrt(squares / (n - 1) / n);
-}
-
-// The root of the mean of the squares; NaN of no values.
-inline double root_mean_square(const std::vector<double>& values) {
-  double squares = 0;
-  for (const double value : values) {
-    squares += value * value;
-  }
-  return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
 // Mean and standard deviation of values that come one by one and are not kept, without the loss of digits that a sum of

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gazelog/interpret.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,11 +6,13 @@
 #include <cstdlib>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "gazelog/conventions_text.hpp"
 #include "gazelog/eyes.hpp"
 #include "gazelog/row_order.hpp"
 #include "gazelog/row_samples.hpp"
+#include "gazetrace/gaze_raw.hpp"
 
 namespace gazetrace {
 namespace {
@@ -209,8 +209,34 @@ GazeLog log_without_samples(const RawGaze& raw, const Conventions& conventions) 
   return log;
 }
 
-}  // namespace
+// Keeps the poses whose times increase, and makes them of unit length.
+void finish_head(GazeLog& log) {
+  if (log.head.empty()) {
+    return;
+  }
+  std::stable_sort(log.head.begin(), log.head.end(),
+                   [](const HeadPose& a, const HeadPose& b) { return a.t_ns < b.t_ns; });
+  std::vector<HeadPose> kept;
+  kept.reserve(log.head.size());
+  for (const HeadPose& pose : log.head) {
+    const Quatd& q = pose.orientation;
+    const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+    if (!is_finite(pose.position_m) || !(norm > 1e-6) || !std::isfinite(norm)) {
+      continue;
+    }
+    if (!kept.empty() && kept.back().t_ns == pose.t_ns) {
+      kept.pop_back();
+    }
+    // Of unit length but for rounding: what was written by gazetrace keeps its bits.
+    const bool is_unit = std::abs(norm - 1) <= 8 * std::numeric_limits<double>::epsilon();
+    kept.push_back({pose.t_ns, pose.position_m, is_unit ? q : normalize(q)});
+  }
+  log.head = std::move(kept);
+}
 
+// Makes one sample of each row, in the order of the file, and adds what holds for all of them: kind, geometry, origins,
+// witnesses, warnings. Rows are neither sorted nor joined. The only thing that is rejected is a unit that needs a
+// display which is not known.
 GazeLog interpret_rows(const RawGaze& raw, const Conventions& conventions) {
   GazeLog log = log_without_samples(raw, conventions);
   log.samples.reserve(raw.rows.size());
@@ -226,6 +252,8 @@ GazeLog interpret_rows(const RawGaze& raw, const Conventions& conventions) {
   finish_head(log);
   return log;
 }
+
+}  // namespace
 
 GazeLog interpret(const RawGaze& raw, const Conventions& conventions) {
   const bool keeps_stamps = raw.declared.time_exponent.value == conventions.time_exponent.value;
@@ -254,30 +282,6 @@ GazeLog interpret(const RawGaze& raw, const Conventions& conventions) {
   }
   log.facts = facts_in_words(raw, log.conventions);
   return log;
-}
-
-void finish_head(GazeLog& log) {
-  if (log.head.empty()) {
-    return;
-  }
-  std::stable_sort(log.head.begin(), log.head.end(),
-                   [](const HeadPose& a, const HeadPose& b) { return a.t_ns < b.t_ns; });
-  std::vector<HeadPose> kept;
-  kept.reserve(log.head.size());
-  for (const HeadPose& pose : log.head) {
-    const Quatd& q = pose.orientation;
-    const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-    if (!is_finite(pose.position_m) || !(norm > 1e-6) || !std::isfinite(norm)) {
-      continue;
-    }
-    if (!kept.empty() && kept.back().t_ns == pose.t_ns) {
-      kept.pop_back();
-    }
-    // Of unit length but for rounding: what was written by gazetrace keeps its bits.
-    const bool is_unit = std::abs(norm - 1) <= 8 * std::numeric_limits<double>::epsilon();
-    kept.push_back({pose.t_ns, pose.position_m, is_unit ? q : normalize(q)});
-  }
-  log.head = std::move(kept);
 }
 
 }  // namespace gazetrace

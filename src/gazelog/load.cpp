@@ -269,14 +269,6 @@ std::vector<GazeFormatInfo> gaze_formats() {
   return infos;
 }
 
-std::vector<GazeFormatGuess> sniff_gaze_format(const std::string& path) {
-  std::vector<GazeFormatGuess> guesses;
-  for (const Guess& guess : sniff(open_log_file(path))) {
-    guesses.push_back({guess.format->name, guess.confidence});
-  }
-  return guesses;
-}
-
 RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options, Mending mending) {
   return with_file(path, options, [&](GazeFile& file) { return read_opened(file, path, options, mending); });
 }

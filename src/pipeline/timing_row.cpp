@@ -92,17 +92,4 @@ void add_samples(const TraceStats& samples, const TraceStats& pilot, const Sampl
   }
 }
 
-void add_traced(const TimingRow& part, TimingRow& whole) {
-  whole.learn_ms += part.learn_ms;
-  whole.trace_ms += part.trace_ms;
-  whole.trace_cpu_ms += part.trace_cpu_ms;
-  whole.total_ms += part.total_ms;
-  add_counts(part, whole);
-  whole.region_pixels = part.region_pixels;
-  for (std::size_t i = 0; i < kTimingRegions; ++i) {
-    whole.region_samples.at(i) += part.region_samples.at(i);
-    whole.region_cpu_ms.at(i) += part.region_cpu_ms.at(i);
-  }
-}
-
 }  // namespace gazetrace

@@ -21,7 +21,5 @@ void add_samples(const TraceStats& samples, const TraceStats& pilot, const Sampl
 // Samples that decided where those of frames belong, and were discarded; add_samples() adds the frame's own.
 void add_pilot(const TraceStats& pilot, TimingRow& row);
 void add_others(const TraceStats& others, TimingRow& row);  // RenderedFrame::others
-// Adds what a part of the samples says of its tracing: times, samples and rays.
-void add_traced(const TimingRow& part, TimingRow& whole);
 
 }  // namespace gazetrace

@@ -7,19 +7,26 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <random>
 
 #include "core/image_io.hpp"
-#include "core/stopwatch.hpp"
 #include "gazetrace/color.hpp"
 #include "gazetrace/output.hpp"
 
 using namespace gazetrace;
 
 namespace {
+
+std::int64_t process_cpu_ns() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
+}
 
 // Gradients, stripes and a few highlights in all hues.
 ImageRgb made_picture() {

@@ -78,14 +78,6 @@ void drop_short_fixations(const GazeDirections& gaze, EyeEvents& events) {
   }
 }
 
-std::vector<EventMethodInfo> event_methods() {
-  std::vector<EventMethodInfo> infos;
-  for (const EventMethod& method : methods()) {
-    infos.push_back({method.name, method.description});
-  }
-  return infos;
-}
-
 EyeEvents detect_events(const GazeLog& log, const EventSettings& settings) {
   check_settings(settings);
   const EventMethod& method = method_by_name(settings.method);

@@ -28,7 +28,6 @@ class ExtensionReader {
   [[nodiscard]] Vec4f color_alpha(const char* key, const Vec4f& fallback);
   [[nodiscard]] TextureRef texture(const char* key, TextureUse use);
   [[nodiscard]] float texture_scale(const char* key) const;  // normal maps
-  [[nodiscard]] bool has_texture(const char* key) const { return from_.textures.contains(key); }
 
  private:
   const std::vector<double>* numbers(const char* key, std::size_t count) const;

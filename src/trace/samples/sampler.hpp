@@ -141,13 +141,4 @@ constexpr float sample_1d(SampleKey key, std::uint32_t sample_index, std::uint32
   return to_unit_float(reverse_bits(scramble_reversed(index, seeds.x)));
 }
 
-// For stochastic alpha. A plain hash, because a ray may be tested against the same triangle twice and must get the same
-// result.
-constexpr float alpha_sample(SampleKey key, std::uint32_t sample_index, std::uint32_t vertex, std::uint32_t instance,
-                             std::uint32_t geometry, std::uint32_t primitive) noexcept {
-  const std::uint64_t who = (std::uint64_t{instance} << 32U) ^ (std::uint64_t{geometry} << 56U) ^ primitive;
-  const std::uint64_t when = (std::uint64_t{sample_index} << 8U) ^ vertex;
-  return static_cast<float>(hash_combine(key.value ^ hash64(when + 0xa1fa0001ULL), who) >> 40U) * 0x1p-24F;
-}
-
 }  // namespace gazetrace

@@ -52,7 +52,7 @@ struct ShadingMaterial {
   float normal_scale = 1;
   float alpha_cutoff = 0.5F;
   AlphaMode alpha_mode = AlphaMode::opaque;
-  bool double_sided = false, unlit = false, emissive = false, vertex_color = false;
+  bool double_sided = false, unlit = false, emissive = false;
   bool any_own_uv = false;
   std::uint8_t group_count = 0;
   std::array<TexelGroup, 3> groups;

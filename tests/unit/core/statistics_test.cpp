@@ -39,7 +39,6 @@ TEST(Statistics, MediansAndQuantilesOfWhatIsNotSorted) {
   std::vector<double> even{40, 10, 30, 20};
   EXPECT_EQ(upper_median(even), 30);
   EXPECT_EQ(lower_quantile(even, 0.5), 20);
-  EXPECT_EQ(upper_quantile(even, 0.5), 30);
   EXPECT_EQ(lower_quantile(even, 1), 40);
   std::vector<float> odd{3, 1, 2};
   EXPECT_EQ(upper_median(odd), 2.0F);
@@ -57,15 +56,13 @@ TEST(Statistics, OfNoValuesThereIsNoMedian) {
   std::vector<double> none;
   EXPECT_TRUE(std::isnan(upper_median(none)));
   EXPECT_TRUE(std::isnan(lower_quantile(none, 0.5)));
-  EXPECT_TRUE(std::isnan(upper_quantile(none, 0.5)));
   EXPECT_TRUE(std::isnan(mean_of(none)));
-  EXPECT_TRUE(std::isnan(root_mean_square(none)));
   std::vector<std::int64_t> no_steps;
   EXPECT_EQ(upper_median(no_steps), 0);
 }
 
 TEST(Statistics, MeansAndSpreadsOfAnArithmeticSeries) {
-  // 1, 2, ... n: the mean is (n + 1) / 2, the unbiased variance n (n + 1) / 12, the mean square (n + 1)(2n + 1) / 6.
+  // 1, 2, ... n: the mean is (n + 1) / 2, the unbiased variance n (n + 1) / 12.
   constexpr int kCount = 25;
   std::vector<double> values;
   RunningSpread spread;
@@ -76,7 +73,6 @@ TEST(Statistics, MeansAndSpreadsOfAnArithmeticSeries) {
   const double variance = kCount * (kCount + 1.0) / 12;
   EXPECT_DOUBLE_EQ(mean_of(values), 13);
   EXPECT_DOUBLE_EQ(standard_error(values, 13), std::sqrt(variance / kCount));
-  EXPECT_DOUBLE_EQ(root_mean_square(values), std::sqrt((kCount + 1.0) * (2.0 * kCount + 1) / 6));
   EXPECT_EQ(spread.count(), values.size());
   EXPECT_NEAR(spread.mean(), 13, 1e-14);
   EXPECT_NEAR(spread.deviation(), std::sqrt(variance), 1e-13);

@@ -155,16 +155,6 @@ TEST(Sampler, IsUniformAndIndependentAcrossKeys) {
          const SampleKey key = make_sample_key(2, 0, i / 16);
          return std::array{sample_1d(key, i % 16, 10), sample_2d(key, i % 16, 11).y};
        }},
-      {"alpha of two triangles",
-       [](std::uint32_t i) {
-         const SampleKey key = make_sample_key(2, 0, 7);
-         return std::array{alpha_sample(key, i, 1, 5, 0, 40), alpha_sample(key, i, 1, 5, 0, 41)};
-       }},
-      {"alpha of two geometries",
-       [](std::uint32_t i) {
-         const SampleKey key = make_sample_key(2, 0, i);
-         return std::array{alpha_sample(key, 0, 1, 5, 0, 40), alpha_sample(key, 0, 2, 5, 1, 40)};
-       }},
   };
   for (const Pair& pair : pairs) {
     std::vector<double> observed(kSide * kSide);
@@ -219,11 +209,6 @@ TEST(Sampler, PairsOfDimensionsAreShuffledApart) {
     }
     EXPECT_LT(squares / kPlaces, 2.0 / 144 / kSamples) << other;
   }
-}
-
-TEST(Sampler, AlphaAsksTheSameTriangleTwice) {
-  const SampleKey key = make_sample_key(2, 0, 7);
-  EXPECT_EQ(alpha_sample(key, 3, 1, 5, 2, 40), alpha_sample(key, 3, 1, 5, 2, 40));
 }
 
 }  // namespace
