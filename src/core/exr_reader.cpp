@@ -7,8 +7,10 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfPixelType.h>
+#include <OpenEXR/ImfTestFile.h>
 
 #include <algorithm>
 #include <array>
@@ -87,10 +89,16 @@ void check_exr_windows(const Imf::Header& header, std::uint64_t bytes, const std
 
 namespace {
 
-// Of a deep file OpenEXR would lay each pixel's samples over each other.
-void check_flat(const Imf::Header& header, const std::string& place) {
-  if (header.hasType() && Imf::isDeepData(header.type())) {
-    throw Error(ErrorKind::input, place, "a deep EXR (" + header.type() + ") has several values for a pixel",
+// Of a deep file OpenEXR would lay each pixel's samples over each other, where they have a depth. The first part is the
+// one that is read.
+template <class Source>
+void refuse_deep(Source&& source, const std::string& place) {
+  if (!Imf::isDeepOpenExrFile(source)) {
+    return;
+  }
+  const Imf::MultiPartInputFile file(source, 0);
+  if (Imf::isDeepData(file.header(0).type())) {
+    throw Error(ErrorKind::input, place, "a deep EXR (" + file.header(0).type() + ") has several values for a pixel",
                 "flatten it");
   }
 }
@@ -115,18 +123,21 @@ ExrReader::ExrReader(const PictureSource& source, const std::string& place)
     : file_(std::make_unique<File>()), place_(place) {
   try {
     if (source.bytes.empty()) {
+      refuse_deep(source.path.c_str(), place);
       file_->input = std::make_unique<Imf::InputFile>(source.path.c_str(), 0);
     } else {
+      refuse_deep(MemoryStream(source.bytes), place);
       file_->stream = std::make_unique<MemoryStream>(source.bytes);
       file_->input = std::make_unique<Imf::InputFile>(*file_->stream, 0);
     }
+  } catch (const Error&) {
+    throw;
   } catch (const std::bad_alloc&) {
     throw Error(ErrorKind::runtime, place, "there is no memory for the EXR", "make it smaller");
   } catch (const std::exception& e) {
     throw Error(ErrorKind::input, place, std::string("cannot read the EXR: ") + e.what());
   }
   const Imf::Header& header = file_->input->header();
-  check_flat(header, place);
   check_exr_windows(header, size_of(source), place);
   const Imath::Box2i& window = header.displayWindow();
   format = "openexr";

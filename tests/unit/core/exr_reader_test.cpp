@@ -199,30 +199,32 @@ std::string refusal(const std::function<void()>& read) {
   }
 }
 
+void write_deep(const std::string& path, const std::vector<std::string>& channels) {
+  Imf::Header header(2, 1);
+  header.setType(Imf::DEEPSCANLINE);
+  header.compression() = Imf::NO_COMPRESSION;
+  std::array<unsigned, 2> counts{1, 1};
+  float value = 1;
+  std::array<float*, 2> samples{&value, &value};
+  Imf::DeepFrameBuffer buffer;
+  buffer.insertSampleCountSlice(
+      Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()), sizeof(unsigned), 2 * sizeof(unsigned)));
+  for (const std::string& name : channels) {
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    buffer.insert(name, Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(samples.data()), sizeof(float*),
+                                       2 * sizeof(float*), sizeof(float)));
+  }
+  Imf::DeepScanLineOutputFile file(path.c_str(), header);
+  file.setFrameBuffer(buffer);
+  file.writePixels(1);
+}
+
 TEST(ExrReader, DeepAndSubsampledFilesAreRefusedByTheirKind) {
   const TemporaryFolder folder;
   const std::string deep = folder / "deep.exr";
-  {
-    Imf::Header header(2, 1);
-    header.setType(Imf::DEEPSCANLINE);
-    header.compression() = Imf::NO_COMPRESSION;
-    for (const std::string& name : kRgb) {
-      header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    }
-    std::array<unsigned, 2> counts{1, 1};
-    float value = 1;
-    std::array<float*, 2> samples{&value, &value};
-    Imf::DeepFrameBuffer buffer;
-    buffer.insertSampleCountSlice(
-        Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()), sizeof(unsigned), 2 * sizeof(unsigned)));
-    for (const std::string& name : kRgb) {
-      buffer.insert(name, Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(samples.data()), sizeof(float*),
-                                         2 * sizeof(float*), sizeof(float)));
-    }
-    Imf::DeepScanLineOutputFile file(deep.c_str(), header);
-    file.setFrameBuffer(buffer);
-    file.writePixels(1);
-  }
+  const std::string with_depth = folder / "depth.exr";
+  write_deep(deep, kRgb);
+  write_deep(with_depth, {"R", "G", "B", "A", "Z"});
   const std::string subsampled = folder / "subsampled.exr";
   {
     Imf::Header header(4, 2);
@@ -237,8 +239,8 @@ TEST(ExrReader, DeepAndSubsampledFilesAreRefusedByTheirKind) {
     file.setFrameBuffer(buffer);
     file.writePixels(2);
   }
-  for (const auto& [path, words] :
-       std::map<std::string, std::string>{{deep, "deepscanline"}, {subsampled, "B is subsampled"}}) {
+  for (const auto& [path, words] : std::map<std::string, std::string>{
+           {deep, "deepscanline"}, {with_depth, "deepscanline"}, {subsampled, "B is subsampled"}}) {
     EXPECT_THAT(refusal([&] { static_cast<void>(read_exr_rgb(path)); }), HasSubstr(words));
     EXPECT_THAT(refusal([&] { static_cast<void>(load_environment(path)); }), HasSubstr(words));
     EXPECT_THAT(refusal([&] { static_cast<void>(read_image_rgba(path, "a texture")); }), HasSubstr(words));
