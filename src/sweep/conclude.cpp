@@ -275,9 +275,10 @@ std::map<std::string, std::map<std::string, ResultScore>> row_scores(const std::
   for (const auto& [metric, parts] : values) {
     for (const auto& [part, raw] : parts) {
       ResultScore& score = scores[metric][part];
+      const auto interval = direction_of(metric) == MetricDirection::lower ? error_interval : mean_interval;
       const auto of_metric = floor.find(metric);
       if (of_metric == floor.end() || !of_metric->second.contains(part)) {
-        score.value = mean_interval(raw);
+        score.value = interval(raw);
         score.is_resolved = false;
         continue;
       }
@@ -286,7 +287,7 @@ std::map<std::string, std::map<std::string, ResultScore>> row_scores(const std::
       for (const double value : raw) {
         corrected.push_back(without_reference_variance(metric, value, least));
       }
-      score.value = mean_interval(corrected);
+      score.value = interval(corrected);
       score.is_resolved = !is_better(metric, mean_interval(raw).mean, least);
     }
   }

@@ -65,6 +65,20 @@ Interval mean_interval(const std::vector<double>& values) {
   return interval;
 }
 
+Interval error_interval(const std::vector<double>& values) {
+  Interval interval = mean_interval(values);
+  if (!interval.low) {
+    return interval;
+  }
+  if (!(interval.mean > 0)) {
+    return {interval.mean, std::nullopt, std::nullopt};
+  }
+  const double factor = std::exp((*interval.high - interval.mean) / interval.mean);
+  interval.low = interval.mean / factor;
+  interval.high = interval.mean * factor;
+  return interval;
+}
+
 Interval geometric_interval(const std::vector<double>& values) {
   std::vector<double> logarithms;
   logarithms.reserve(values.size());

@@ -52,6 +52,17 @@ TEST(SweepStatistics, IntervalsOfTimesStayAboveZero) {
   EXPECT_LT(*mean_interval({1, 1.5}).low, 0);
 }
 
+// Mean 2 and standard error 1: the logarithm of the mean has the standard error 1 / 2.
+TEST(SweepStatistics, IntervalsOfErrorsStayAboveZero) {
+  const Interval interval = error_interval({1, 3});
+  EXPECT_DOUBLE_EQ(interval.mean, 2);
+  EXPECT_NEAR(std::log(*interval.high / 2), 12.7062047 / 2, 1e-6);
+  EXPECT_NEAR(*interval.low * *interval.high, 4, 1e-9);
+  EXPECT_LT(*mean_interval({1, 3}).low, 0);
+  EXPECT_FALSE(error_interval({-1, 0.5}).low.has_value());
+  EXPECT_FALSE(error_interval({5}).low.has_value());
+}
+
 TEST(SweepStatistics, ARatioIsTakenPairByPair) {
   // Machine speed drifts by a factor of four, the ratio does not.
   const Interval interval = ratio_interval({8, 16, 32}, {2, 4, 8});
