@@ -156,12 +156,4 @@ GazeInspection inspect_gaze(const GazeUnderInspection& gaze, const GazeInspectOp
 std::string inspection_text(const GazeInspection& inspection);
 std::string inspection_json(const GazeInspection& inspection);
 
-// A picture of x and y over time with losses, gaps and events, and of the scanpath over the display. Time counts from
-// the first sample.
-struct GazePictureOptions {
-  int width_px = 1200;
-  std::string frame_image;  // .png or .jpg, put behind the scanpath; empty: none
-};
-std::string inspection_svg(const GazeLog& log, const GazeInspection& inspection, const GazePictureOptions& options);
-
 }  // namespace gazetrace

@@ -49,7 +49,14 @@ double gaze_cone_95_deg(const GazeUncertainty& uncertainty);
 struct SceneHeatSettings {
   std::optional<std::int32_t> frame;  // empty: the middle one of those that are planned
   double sigma_deg = 0.5;             // above 0, at most 10
-  std::string picture;                // .png or .jpg of that frame, to be drawn upon; empty: its surfaces in grey
+};
+struct SceneHeat {
+  std::int32_t frame = 1;
+  int width_px = 0, height_px = 0;  // at most 480 wide
+  std::vector<double> values;       // row by row from the upper left corner, in seconds per square metre
+  std::vector<std::uint8_t> greys;  // of the surfaces, light where they are seen at a right angle
+  double seconds = 0;               // of gaze on the surfaces of the scene, seen or hidden
+  double highest = 0;               // of the values
 };
 
 struct GazeObjectsSettings {
@@ -108,15 +115,20 @@ GazeObjects gaze_objects(PathTracer& tracer, const Scene& scene, const FramePlan
 struct GazeOnScene {
   ResolvedJob resolved;
   GazeObjects objects;
-  std::string heat_svg;  // where a heat map was asked for
+  std::optional<SceneHeat> heat;  // where a heat map was asked for
 };
 GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings,
                           const std::optional<SceneHeatSettings>& heat = std::nullopt);
 
 // `objects` with their hits, and the frame of the plan upon which they are drawn. Throws Error(usage) for a frame that
-// is not in the plan and for settings out of range, Error(input) for a picture that cannot be read.
-std::string scene_heat_svg(PathTracer& tracer, const FramePlan& plan, double frame_s, const GazeObjects& objects,
-                           const SceneHeatSettings& settings);
+// is not in the plan and for settings out of range.
+SceneHeat scene_heat(PathTracer& tracer, const FramePlan& plan, double frame_s, const GazeObjects& objects,
+                     const SceneHeatSettings& settings);
+// As a picture, a PNG file's bytes: colors from dark to light over `picture`, a .png or .jpg of that frame, or over its
+// surfaces in grey where that is empty. Error(input) for a picture that cannot be read.
+std::vector<std::uint8_t> scene_heat_png(const SceneHeat& heat, const std::string& picture);
+// A row of values for each row of the picture, separated by commas.
+std::string scene_heat_csv(const SceneHeat& heat);
 
 // One row for each frame: frame, t_video_ns, t_log_ns, gaze, movement, stimulus, node, material, share, distance_m,
 // x_m, y_m, z_m, also (other objects with at least 0.5 % as "node (material)=share"), beside_share, cone95_deg, near_1,

@@ -15,6 +15,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/external_program.hpp"
 #include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/former_options.hpp"
@@ -144,8 +145,12 @@ int run(int argc, char** argv) {
     sub->footer(kExitCodesHelp);                              \
     commands[#name] = add_##name##_command(*sub, invocation); \
   }
+#define GAZETRACE_EXTERNAL(name, help) add_external_command(app, #name, help);
 #include "cli/commands.def"
 #undef GAZETRACE_COMMAND
+  if (const auto external = find_external_program(app, {argv + 1, argv + argc})) {
+    return run_external_program(*external);
+  }
 
   std::string config;
   app.add_option("--config", config,

@@ -26,7 +26,7 @@ const std::vector<std::vector<std::string>> layers = {
     {"reconstruct", "temporal", "color", "output", "metrics", "visible"},
     {"pipeline", "compare", "results"},
     {"job"},
-    {"sweep", "report", "study", "video", "farm"},
+    {"sweep", "aoi", "video", "farm"},
     {"cli"},
 };
 const std::map<std::string, int> layer_of = [] {
@@ -51,7 +51,6 @@ const std::set<std::pair<std::string, std::string>> sideways = {
     {"output", "reconstruct"},    // writes frames
     {"visible", "metrics"},       // predicts what a metric will measure
     {"visible", "color"},         // through the view that the picture is shown with
-    {"study", "report"},          // pages are filled the same way
     {"farm", "sweep"},            // the rows of a sweep are divided among tasks
 };
 
@@ -63,8 +62,8 @@ const std::map<std::string, std::vector<std::string>> public_headers = {
     {"material", {"material"}},
     {"gazelog", {"gaze_conventions", "gaze_log", "gaze_raw", "gaze_raw_rows", "gaze_read", "gaze_write"}},
     {"gaze",
-     {"gaze", "gaze_event_check", "gaze_event_durations", "gaze_events", "gaze_inspect", "gaze_privacy", "gaze_process",
-      "gaze_synth", "gaze_trials", "gaze_vergence"}},
+     {"gaze", "gaze_event_check", "gaze_event_durations", "gaze_events", "gaze_inspect", "gaze_measure", "gaze_privacy",
+      "gaze_process", "gaze_synth", "gaze_trials", "gaze_vergence"}},
     {"scene", {"scene", "scene_contents", "sky", "deformation"}},
     {"plan", {"plan"}},
     {"foveation", {"density", "foveation"}},
@@ -83,9 +82,8 @@ const std::map<std::string, std::vector<std::string>> public_headers = {
     {"job",
      {"compare_inputs", "compare_job", "former_options", "job", "job_schema", "job_settings", "metric_options",
       "option_schema", "option_values", "recorded_run", "resolve", "run_job"}},
-    {"study", {"gaze_objects", "gaze_aois", "gaze_report"}},
+    {"aoi", {"gaze_objects", "gaze_aois"}},
     {"sweep", {"sweep", "sweep_plan"}},
-    {"report", {"report"}},
     {"video", {"video"}},
     {"farm", {"farm"}},
 };

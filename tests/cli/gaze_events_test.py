@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Events, synthetic gaze, conversion and processing from outside."""
 
-import base64
 import csv
 import gzip
 import json
 import math
-import xml.etree.ElementTree
 
 import harness
 
@@ -231,25 +229,6 @@ class GazeTools(harness.CliTest):
         self.assertIn("effective age at mid-display", slow.stdout)
         self.assertIn("1.2 frames at 24 fps", slow.stderr)
         self.assertNotIn("frames at", self.plan("--gaze-latency", "50ms", "--fps", "120").stderr)
-
-    def test_a_picture_lies_behind_the_scanpath(self):
-        self.synth()
-        self.run_ok("render", "box.gltf", "--gaze", "log.csv", "--size", "32x18", "--region-samples", "1,1,1", "--frames", "1",
-                    "-o", "f.####.png", "--quiet")
-        self.run_ok("gaze", "inspect", "log.csv", "--svg", "gaze.svg", "--frame-image", "f.0001.png")
-        svg = xml.etree.ElementTree.parse(self.folder / "gaze.svg").getroot()
-        space = "{http://www.w3.org/2000/svg}"
-        images = list(svg.iter(space + "image"))
-        self.assertEqual(len(images), 1)
-        head, data = images[0].get("href").split(",", 1)
-        self.assertEqual(head, "data:image/png;base64")
-        self.assertEqual(base64.b64decode(data, validate=True), (self.folder / "f.0001.png").read_bytes())
-        # It fills the display, which is drawn as a white rectangle.
-        display = [r for r in svg.iter(space + "rect") if r.get("fill") == "#ffffff" and r.get("stroke")]
-        self.assertIn([images[0].get(k) for k in ("x", "y", "width", "height")],
-                      [[r.get(k) for k in ("x", "y", "width", "height")] for r in display])
-        self.assertAlmostEqual(float(images[0].get("width")) / float(images[0].get("height")), 16 / 9, delta=0.01)
-        self.assert_refused(["gaze", "inspect", "log.csv", "--svg", "other.svg", "--frame-image", "none.png"], ["none.png"])
 
     def test_anchors_map_the_clock(self):
         self.synth()

@@ -25,8 +25,9 @@ class Privacy(harness.CliTest):
         for log in ("log.csv", "gazepoint.csv"):
             for form in ([], ["--json"]):
                 said[f"inspect {log} {form}"] = self.run_ok("gaze", "inspect", log, *form, *more).stdout
-            self.run_ok("gaze", "inspect", log, "--svg", "log.svg", "--overwrite", *more)
-            said[f"svg {log}"] = (self.folder / "log.svg").read_text()
+            said[f"measure {log}"] = self.run_ok("gaze", "measure", log, "--json", "--tables", "t", "--overwrite", *more).stdout
+            for name in self.files("t"):
+                said[f"{name} {log}"] = (self.folder / "t" / name).read_text()
         gaze = ["--gaze", "log.csv", "--size", "32x18", "--frames", "1-2"]
         said["plan"] = self.run_ok("plan", "box.gltf", *gaze, *more).stdout
         said["plan --json"] = self.run_ok("plan", "box.gltf", *gaze, "--json", *more).stdout

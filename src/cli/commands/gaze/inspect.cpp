@@ -18,19 +18,10 @@ struct InspectArguments {
   GazeFileSettings gaze;
   ScreenSettings screen;
   std::string save_columns;
-  std::string svg;
-  std::string frame_image;
   bool overwrite = false;
   bool keep_ids = false;
   JsonOutput json;
 };
-
-void write_picture(const InspectArguments& arguments, const GazeLog& log, const GazeInspection& inspection) {
-  GazePictureOptions options;
-  options.frame_image = arguments.frame_image;
-  const std::string text = with_flags(inspection_svg(log, inspection, options));
-  write_text_atomically(arguments.svg, text);
-}
 
 // The raw numbers of the trial alone, which an inspection interprets again.
 void cut_rows(RawGaze& raw, const GazeTrial& trial) {
@@ -41,10 +32,8 @@ void cut_rows(RawGaze& raw, const GazeTrial& trial) {
 }
 
 int run_inspect(const InspectArguments& arguments) {
-  for (const std::string& output : {arguments.svg, arguments.save_columns}) {
-    if (!output.empty()) {
-      check_output_file(output, arguments.overwrite);
-    }
+  if (!arguments.save_columns.empty()) {
+    check_output_file(arguments.save_columns, arguments.overwrite);
   }
   GazeUnderInspection gaze = load_for_inspection(arguments.gaze.path, read_options(arguments.gaze, arguments.screen));
   if (!arguments.gaze.trials.trial.empty()) {
@@ -57,9 +46,6 @@ int run_inspect(const InspectArguments& arguments) {
   const GazeInspection inspection = inspect_gaze(gaze, options);
   if (!arguments.save_columns.empty()) {
     save_gaze_columns(merged_columns(arguments.gaze), arguments.save_columns);
-  }
-  if (!arguments.svg.empty()) {
-    write_picture(arguments, gaze.log, inspection);
   }
   arguments.json.print(with_flags(inspection_text(inspection)),
                        [&] { return with_flags(inspection_json(inspection)); });
@@ -76,13 +62,9 @@ Command add_gaze_inspect_command(CLI::App& app, const Invocation& /*invocation*/
   const auto options = std::make_shared<CommandOptions<InspectArguments>>(std::move(schema));
   options->bind(app, *arguments);
   app.add_option("log", arguments->gaze.path, "Gaze log")->required()->type_name("FILE");
-  app.add_option("--svg", arguments->svg, "Draws x and y over time with gaps and events, and the scanpath")
-      ->type_name("OUT.svg");
-  app.add_option("--frame-image", arguments->frame_image, "A .png or .jpg to show behind the scanpath")
-      ->type_name("FILE");
   app.add_option("--save-columns", arguments->save_columns, "Writes what was declared of the columns as a column map")
       ->type_name("MAP.json");
-  app.add_flag("--overwrite", arguments->overwrite, "Replaces OUT.svg and MAP.json when they are there");
+  app.add_flag("--overwrite", arguments->overwrite, "Replaces MAP.json when it is there");
   app.add_flag("--keep-ids", arguments->keep_ids,
                "Also shows what can identify a person or a session, such as times of day; left out otherwise");
   add_json_option(app, arguments->json);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <memory>
 
 #include "cli/command.hpp"
@@ -21,7 +22,7 @@ struct ObjectsArguments {
   Job job;
   GazeObjectsSettings objects;
   bool recorded_here = false;
-  std::string table, heat_map;
+  std::string table, heat_map, heat_picture;
   SceneHeatSettings heat;
   JsonOutput json;
 };
@@ -36,6 +37,17 @@ std::string summary(const ObjectsArguments& arguments, const GazeObjects& object
                               : "replayed: nobody stated that the viewer saw this (--recorded-here)");
 }
 
+void write_heat(const ObjectsArguments& arguments, const SceneHeat& heat) {
+  if (arguments.heat_map.ends_with(".csv")) {
+    write_text_atomically(arguments.heat_map, scene_heat_csv(heat));
+  } else {
+    const std::vector<std::uint8_t> png = scene_heat_png(heat, arguments.heat_picture);
+    write_text_atomically(arguments.heat_map, std::string(png.begin(), png.end()));
+  }
+  std::fprintf(stderr, "%s: %.2g s of gaze in the scene; as frame %d sees it, up to %.3g s per square metre\n",
+               arguments.heat_map.c_str(), heat.seconds, heat.frame, heat.highest);
+}
+
 int run_objects(ObjectsArguments& arguments) {
   for (const std::string& output : {arguments.table, arguments.heat_map}) {
     if (!output.empty()) {
@@ -43,13 +55,16 @@ int run_objects(ObjectsArguments& arguments) {
     }
   }
   arguments.json.check();
+  if (!arguments.heat_map.empty() && !arguments.heat_map.ends_with(".png") && !arguments.heat_map.ends_with(".csv")) {
+    throw Error(ErrorKind::usage, "`heat-map`", "is written as .png or .csv, not as '" + arguments.heat_map + "'");
+  }
   arguments.objects.stimulus = arguments.recorded_here ? Stimulus::recorded : Stimulus::replayed;
   const bool asks_for_heat = !arguments.heat_map.empty();
   const GazeOnScene seen =
       look_at_scene(arguments.job, arguments.objects, asks_for_heat ? std::optional(arguments.heat) : std::nullopt);
   print_warnings(seen.resolved.warnings);
   if (asks_for_heat) {
-    write_text_atomically(arguments.heat_map, seen.heat_svg);
+    write_heat(arguments, *seen.heat);
   }
   const bool json = arguments.table.ends_with(".json");
   const std::string text = json ? objects_as_json(seen.objects) : objects_as_tsv(seen.objects);
@@ -85,11 +100,13 @@ Command add_gaze_objects_command(CLI::App& app, const Invocation& /*invocation*/
                  "Rays over the frame that look for these; they are found to half a step of the grid")
       ->type_name("N")
       ->capture_default_str();
-  app.add_option("--heat-map", arguments->heat_map,
-                 "Draws on the surfaces of the scene where the gaze of all frames fell, as one of the frames sees them")
-      ->type_name("OUT.svg");
+  app.add_option(
+         "--heat-map", arguments->heat_map,
+         "Where on the surfaces of the scene the gaze of all frames fell, as one of the frames sees them: a .png, "
+         "or as .csv its values")
+      ->type_name("OUT");
   app.add_option("--heat-frame", arguments->heat.frame, "Which frame; default: the middle one")->type_name("N");
-  app.add_option("--heat-picture", arguments->heat.picture,
+  app.add_option("--heat-picture", arguments->heat_picture,
                  "A .png or .jpg of that frame to draw upon; default: its surfaces in grey")
       ->type_name("FILE");
   app.add_option("--heat-sigma", arguments->heat.sigma_deg,

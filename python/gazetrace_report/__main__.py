@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+"""python -m gazetrace_report sweep|gaze WORDS..."""
+
+import sys
+
+from .command_line import Problem, end
+
+
+def sweep(words=None):
+    from .sweep_command import main
+    end("gazetrace report", main)
+
+
+def gaze(words=None):
+    from .gaze_command import main
+    end("gazetrace gaze report", main)
+
+
+def which(words):
+    commands = {"sweep": sweep, "gaze": gaze}
+    if not words or words[0] not in commands:
+        raise Problem("name what to report on: sweep or gaze")
+    del sys.argv[1]
+    commands[words[0]]()
+
+
+if __name__ == "__main__":
+    end("gazetrace_report", which)

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the commands share: one rule for --json, files that are written whole, and what can go wrong in one line on the
+error stream, with the program's exit codes."""
+
+import json
+import os
+import sys
+from pathlib import Path
+
+PACKAGES = {"matplotlib": "python3-matplotlib", "jinja2": "python3-jinja2", "pandas": "python3-pandas"}
+USAGE, FAILED = 2, 3
+
+
+class Problem(Exception):
+    """For the user; `code` is the exit code."""
+
+    def __init__(self, text, code=USAGE):
+        super().__init__(text)
+        self.code = code
+
+
+def end(name, main):
+    """Runs `main` with the command line's words and ends the process with its exit code."""
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except Problem as problem:
+        print(f"gazetrace: error: {problem}", file=sys.stderr)
+        sys.exit(problem.code)
+    except ModuleNotFoundError as missing:
+        if missing.name not in PACKAGES:
+            raise
+        _try_the_systems_python()
+        print(f"gazetrace: error: {name} needs {', '.join(PACKAGES)}: install them, on Debian with "
+              f"'apt-get install {' '.join(PACKAGES.values())}'", file=sys.stderr)
+        sys.exit(FAILED)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _try_the_systems_python():
+    """Another Python that comes first on the PATH knows nothing of the distribution's packages."""
+    system = "/usr/bin/python3"
+    if os.path.basename(sys.argv[0]).startswith("gazetrace-") and os.access(system, os.X_OK) and not os.environ.get("GAZETRACE_REPORT_TRIED"):
+        if os.path.realpath(sys.executable) != os.path.realpath(system) or sys.prefix != sys.base_prefix:
+            os.execve(system, [system, *sys.argv], {**os.environ, "GAZETRACE_REPORT_TRIED": "1"})
+
+
+def add_json_option(parser):
+    parser.add_argument("--json", metavar="[FILE]", help="prints the result as JSON in place of the text, or writes it into FILE beside it")
+
+
+def with_json_joined(words):
+    """What follows --json is its file only where it looks like one."""
+    joined, rest = [], list(words)
+    while rest:
+        word = rest.pop(0)
+        if word == "--json":
+            word = f"--json={rest.pop(0) if rest and (rest[0] == '-' or rest[0].endswith('.json')) else '-'}"
+        joined.append(word)
+    return joined
+
+
+def json_file(given, overwrite):
+    """The file that --json names; None for none, or for stdout."""
+    path = Path(given) if given not in (None, "-") else None
+    if path:
+        check_output(path, overwrite)
+    return path
+
+
+def say(text, result, given):
+    """Prints a command's text, or its result as --json asks."""
+    result = json.dumps(result, indent=2) + "\n"
+    if given not in (None, "-"):
+        write(Path(given), result)
+    print(result if given == "-" else text, end="")
+
+
+def check_output(path, overwrite):
+    if path.exists() and not overwrite:
+        raise Problem(f"{path}: exists already; give --overwrite to replace it")
+    if path.is_dir():
+        raise Problem(f"{path}: is a folder; name a file")
+
+
+def write(path, content):
+    """Whole or not at all: the file takes its name when all of it is there."""
+    data = content.encode() if isinstance(content, str) else content
+    rest = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        rest.write_bytes(data)
+        os.replace(rest, path)
+    except OSError as problem:
+        rest.unlink(missing_ok=True)
+        raise Problem(f"{path}: cannot be written: {problem.strerror}", FAILED) from problem

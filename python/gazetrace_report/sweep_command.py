@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`gazetrace report`: a page, diagrams and their numbers of what a sweep measured."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from .command_line import Problem, add_json_option, check_output, json_file, say, with_json_joined, write
+
+
+def parse(words):
+    parser = argparse.ArgumentParser(prog="gazetrace report", description="Make a page, diagrams and tables of what a sweep measured.", allow_abbrev=False)
+    parser.add_argument("results", type=Path, help="results.json of a sweep, or its folder")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="the page; default: report.html beside the results")
+    parser.add_argument("--plots", type=Path, metavar="DIR", help="writes every diagram as .svg and .pdf and its numbers as .csv; replaces them")
+    parser.add_argument("--max-mib", type=float, default=5, metavar="MIB",
+                        help="limit of the page: pictures are reduced, then left out, to stay below; the page says how (default: 5)")
+    parser.add_argument("--overwrite", action="store_true", help="replaces the page that is there")
+    add_json_option(parser)
+    return parser.parse_args(with_json_joined(words))
+
+
+def main(words):
+    arguments = parse(words)
+    if not arguments.max_mib > 0:
+        raise Problem("--max-mib: must be above 0")
+    from . import sweep_page  # what it needs is asked for after a wrong option has been told
+    from .results import Results
+    results = Results(arguments.results)
+    output = arguments.output or results.folder / "report.html"
+    check_output(output, arguments.overwrite)
+    json_file(arguments.json, arguments.overwrite)
+    drawn = sweep_page.draw(results, arguments.plots is not None)
+    said = {}
+    if arguments.plots:
+        for diagram in drawn:
+            write(arguments.plots / f"{diagram.name}.svg", diagram.svg)
+            write(arguments.plots / f"{diagram.name}.pdf", diagram.pdf)
+            write(arguments.plots / f"{diagram.name}.csv", diagram.numbers.to_csv(index=False, float_format="%.9g"))
+        said["plots"] = [str(arguments.plots / f"{diagram.name}.svg") for diagram in drawn]
+    page, warnings = sweep_page.make(results, drawn, arguments.max_mib)
+    for warning in warnings:
+        print(f"gazetrace: warning: {warning}", file=sys.stderr)
+    write(output, page)
+    size = len(page.encode())
+    text = (f"{len(drawn)} diagrams in {arguments.plots}\n" if arguments.plots else "") + f"{output}: {len(results.rows)} runs, {size / 2**20:.2f} MiB\n"
+    say(text, {**said, "page": str(output), "runs": len(results.rows), "bytes": size, "warnings": warnings}, arguments.json)
+    return 0

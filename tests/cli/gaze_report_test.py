@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`gazetrace gaze measure` and the page that `gazetrace gaze report` makes of it."""
+
+import csv
+import io
+import json
+import math
+import re
+import xml.etree.ElementTree
+
+import harness
+import reports
+from gaze_study_test import blocks
+
+from gazetrace_report.gaze_command import main
+
+
+def table(path):
+    return list(csv.DictReader(io.StringIO(path.read_text()), delimiter="\t"))
+
+
+def drawn_text(svg):
+    return [" ".join(text.itertext()) for text in xml.etree.ElementTree.fromstring(svg).iter("{http://www.w3.org/2000/svg}text")]
+
+
+class GazeReport(reports.ReportTest):
+    def test_one_file_that_loads_nothing(self):
+        self.run_ok("gaze", "synth", "-o", "log.csv", "--duration", "5s", "--noise", "0.05")
+        self.run_ok("gaze", "report", "log.csv", "-o", "page.html", "--json", "page.json", "--parts", "parts")  # by the program
+        page = (self.folder / "page.html").read_text()
+        self.assertNotIn("<script", page)
+        self.assert_stands_alone(page)
+        numbers = json.loads((self.folder / "page.json").read_text())
+        self.assertAlmostEqual(numbers["quality"][0]["precision_rms_s2s"], 0.1, delta=0.015)
+        self.assertGreater(numbers["events"]["fixation"]["count"], 8)
+        self.assertLessEqual({"main_sequence.svg", "heat_map.svg", "scanpath.svg", "x_over_time.svg", "events.tsv", "samples.tsv"}, set(self.files("parts")))
+        for name in self.files("parts"):
+            if name.endswith(".svg"):
+                self.assertNotRegex((self.folder / "parts" / name).read_text(), r"\b(nan|inf)\b")
+        self.assertNotIn("To be checked", page)
+        self.refused(main, ["log.csv", "-o", "page.html"], ["exists already"])
+        self.refused(main, ["log.csv", "-o", "other.html", "--heat-sigma", "0"], ["--heat-sigma"])
+        self.assertEqual(self.report(main, "none.csv", "-o", "other.html")[2], 2)
+        # The page's numbers are those of the measurement.
+        quality, events = reports.Page(page).tables
+        measured = json.loads(self.run_ok("gaze", "measure", "log.csv", "--json").stdout)
+        self.assertEqual(measured["quality"], numbers["quality"])
+        shown = {row[0]: row[1] for row in quality[1:]}
+        q = measured["quality"][0]
+        for name, value, unit, digits in (("Sampling rate", q["sampling_rate_hz"], "Hz", 4), ("Data loss", 100 * q["data_loss"], "%", 3),
+                                          ("Precision, RMS-S2S", q["precision_rms_s2s"], "deg", 3), ("Precision, SD", q["precision_sd"], "deg", 3)):
+            self.assertEqual(shown[name].split(" ")[1], unit)
+            self.assertEqual(float(shown[name].split(" ")[0]), float(f"{value:.{digits}g}"))
+        self.assertEqual((shown["Samples"], shown["Accuracy, mean"]), (str(q["samples"]), "not known"))
+        self.assertEqual({row[0]: row[1] for row in events[1:]}, {name: str(of["count"]) for name, of in measured["events"].items() if of["count"]})
+
+    def test_doubts_are_said(self):
+        self.run_ok("gaze", "synth", "-o", "noisy.csv", "--duration", "20s", "--noise", "0.5", "--rate", "300")
+        self.made(main, "noisy.csv", "-o", "noisy.html")
+        page = (self.folder / "noisy.html").read_text()
+        self.assertTrue(re.search(r"<li>events by ivt: noise of .*these events are not to be relied on; ", page, re.S))
+        self.assertFalse(re.findall(".{30}`", page))
+
+    def test_the_heat_map_is_where_and_as_long_as_fixations_were(self):
+        """Half a second on each of two places: two peaks of seconds / (2 pi sigma^2) there."""
+        self.write("log.csv", "# gazetrace-gaze 1\n# display_px 1600 900\n# display_mm 640 360\n# distance_mm 600\nt[ns],u[1],v[1],valid,eye\n" +
+                   "".join(f"{i * 4_000_000},{0.25 if i < 125 else 0.75},{0.4 if i < 125 else 0.6},ok,cyclopean\n" for i in range(250)))
+        measured = json.loads(self.run_ok("gaze", "measure", "log.csv", "--json", "--tables", "t").stdout)
+        import pandas
+        from gazetrace_report import gaze_diagrams
+        read = {name: pandas.read_csv(self.folder / "t" / name, sep="\t", na_values="n/a") for name in ("events.tsv", "samples.tsv")}
+        recording = gaze_diagrams.Recording(measured, read["events.tsv"], read["samples.tsv"], heat_sigma_deg=2)
+        fixations = gaze_diagrams._fixations(recording, -1, 9)
+        self.assertEqual(len(fixations), 2)
+        heat = gaze_diagrams.heat(recording, fixations)
+        self.assertEqual(heat.shape, (135, 240))
+        for u, v, seconds in ((0.25, 0.4, fixations.duration_ms.iloc[0] / 1000), (0.75, 0.6, fixations.duration_ms.iloc[1] / 1000)):
+            self.assertAlmostEqual(heat[int(135 * v), int(240 * u)], seconds / (2 * math.pi * 4), delta=0.01 * seconds)
+        # 4 degrees to the side of straight ahead, half of the peak is left of a spot that has its half width there.
+        x = math.tan(math.atan((0.25 - 0.5) * 640 / 600) + math.radians(2 * math.sqrt(2 * math.log(2)))) * 600 / 640 + 0.5
+        self.assertAlmostEqual(heat[54, int(240 * x)] / heat[54, 60], 0.5, delta=0.06)
+
+    def test_each_trial_has_its_own_places(self):
+        self.write("blocks.asc", blocks(3))
+        self.made(main, "blocks.asc", "--screen-cm", "40,30", "--screen-distance-cm", "60", "-o", "page.html", "--parts", "parts")
+        names = self.files("parts")
+        self.assertEqual([name for name in names if name.startswith("scanpath")], [f"scanpath_trial_00{n}.svg" for n in (1, 2, 3)])
+        self.assertEqual(len([name for name in names if name.startswith("heat_map")]), 3)
+        self.assertIn("Scanpath, trial 2", drawn_text((self.folder / "parts/scanpath_trial_002.svg").read_text()))
+        self.made(main, "blocks.asc", "--trial", "2", "-o", "two.html", "--parts", "two")
+        self.assertIn("scanpath.svg", self.files("two"))
+        self.assertIn("blocks.asc, trial 2", (self.folder / "two.html").read_text())
+        # Names of trials are texts of the recording, which are shown where they are asked for.
+        options = ["blocks.asc", "--trial-start", "TRIALID *", "-o", "named.html", "--overwrite"]
+        self.made(main, *options)
+        self.assertNotIn("TRIALID", (self.folder / "named.html").read_text())
+        self.made(main, *options, "--keep-ids")
+        self.assertIn("trial 2: TRIALID 2", (self.folder / "named.html").read_text())
+
+    def test_a_picture_behind_the_places(self):
+        self.run_ok("gaze", "synth", "-o", "log.csv", "--duration", "3s")
+        self.write("f.png", harness.png(8, 4, lambda x, y: (30 * x, 60 * y, 90)))
+        self.made(main, "log.csv", "-o", "page.html", "--frame-image", "f.png")
+        page = (self.folder / "page.html").read_text()
+        self.assert_stands_alone(page)
+        self.assertGreater(page.count("data:image/png;base64,"), 2)
+        self.write("f.txt", "no picture")
+        for name in ("f.txt", "none.png"):
+            self.refused(main, ["log.csv", "-o", "other.html", "--frame-image", name], [name])
+
+    def test_vergence_of_eyes_that_look_at_a_point_of_the_screen(self):
+        both = [row for i in range(300) for row in (f"{i * 10_000_000},0.5,0.5,ok,left", f"{i * 10_000_000},0.5,0.5,ok,right")]
+        self.write("log.csv", "# gazetrace-gaze 1\n# display_px 1920 1080\n# display_mm 510 287\n# distance_mm 650\nt[ns],u[1],v[1],valid,eye\n" + "\n".join(both) + "\n")
+        measure = ["gaze", "measure", "log.csv", "--json", "--tables", "parts", "--overwrite"]
+        vergence = json.loads(self.run_ok(*measure, "--pupil-distance", "63").stdout)["vergence"]
+        expected_deg = math.degrees(2 * math.atan(31.5 / 650))
+        rows = table(self.folder / "parts/vergence.tsv")
+        self.assertEqual(len(rows), 300)
+        for row in rows:
+            self.assertAlmostEqual(float(row["vergence_deg"]), expected_deg, places=3)
+            self.assertAlmostEqual(float(row["distance_mm"]), 650, places=1)
+            self.assertEqual(float(row["horizontal_deg"]), 0)
+        self.assertAlmostEqual(vergence["angle_deg_median"], expected_deg, places=9)
+        self.assertEqual([vergence["pupil_distance_mm"], vergence["pupil_distance_is"]], [63, "stated"])
+        self.assertIn("pupil-distance", json.loads(self.run_ok(*measure).stdout)["vergence"]["missing"])
+        self.assertEqual({r["vergence_deg"] for r in table(self.folder / "parts/vergence.tsv")}, {"n/a"})
+        processed = json.loads(self.run_ok(*measure, "--pupil-distance", "63", "--gaze-process", "median:samples=3").stdout)
+        self.assertIn("processing", processed["vergence"]["missing"])
+        self.assert_refused([*measure, "--pupil-distance", "6.3"], ["pupil-distance", "30 to 100 mm"])
+        self.made(main, "log.csv", "-o", "page.html", "--pupil-distance", "63")
+        self.assertIn("Pupils 63.0 mm apart", (self.folder / "page.html").read_text())
+        self.made(main, "log.csv", "-o", "page.html", "--overwrite")
+        self.assertIn("No vergence: the distance between the pupils is not known", (self.folder / "page.html").read_text())
+
+    def test_processed_gaze_and_its_durations(self):
+        self.run_ok("gaze", "synth", "-o", "log.csv", "--duration", "20s", "--noise", "0.05", "--rate", "60")
+        for steps in ([], ["--gaze-process", "median:samples=5"]):
+            self.made(main, "log.csv", "-o", "page.html", "--json", "page.json", "--parts", "parts", "--overwrite", *steps)
+            self.run_ok("gaze", "events", "log.csv", "-o", "events.tsv", "--overwrite", *steps)
+            self.assertEqual((self.folder / "parts/events.tsv").read_text(), (self.folder / "events.tsv").read_text())
+            rows = table(self.folder / "events.tsv")
+            numbers = json.loads((self.folder / "page.json").read_text())
+            for movement in ("fixation", "saccade"):
+                durations = sorted(float(row["duration_ms"]) for row in rows if row["movement"] == movement)
+                self.assertGreater(durations[0], 0)
+                self.assertAlmostEqual(numbers["events"][movement]["duration_ms_median"], durations[len(durations) // 2 - (len(durations) % 2 == 0)], places=2)
+            # The drawing shows the median that the numbers have.
+            drawn = " ".join(drawn_text((self.folder / "parts/saccade_amplitudes.svg").read_text()))
+            self.assertEqual(float(re.search(r"median ([0-9.e+]+)", drawn).group(1)), float(f"{numbers['events']['saccade']['amplitude_deg_median']:.3g}"))
+            # The quality stays that of the recording.
+            self.assertAlmostEqual(numbers["quality"][0]["precision_rms_s2s"], 0.1, delta=0.015)
+        self.assertIn("median", "".join(numbers["warnings"]))
+
+
+if __name__ == "__main__":
+    reports.main()
