@@ -52,7 +52,7 @@ struct SceneHeatSettings {
 };
 struct SceneHeat {
   std::int32_t frame = 1;
-  int width_px = 0, height_px = 0;  // at most 480 wide
+  int width_px = 0, height_px = 0;  // 480 wide, whatever the frame
   std::vector<double> values;       // row by row from the upper left corner, in seconds per square metre
   std::vector<std::uint8_t> greys;  // of the surfaces, light where they are seen at a right angle
   double seconds = 0;               // of gaze on the surfaces of the scene, seen or hidden

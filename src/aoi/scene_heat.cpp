@@ -11,7 +11,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr int kMostColumns = 480;
+constexpr int kColumns = 480;
 constexpr std::uint8_t kEnvironmentGrey = 200, kOutlineGrey = 62;
 
 std::vector<GazeSpot> spots_of(const GazeObjects& objects, double frame_s, double sigma_deg) {
@@ -73,7 +73,7 @@ SceneHeat scene_heat(PathTracer& tracer, const FramePlan& plan, double frame_s, 
   const FrameRequest& request = frame_of(plan, settings.frame);
   SceneHeat heat;
   heat.frame = request.frame;
-  heat.width_px = std::max(2, std::min(request.width_px, kMostColumns));
+  heat.width_px = kColumns;
   heat.height_px = std::max(
       2, static_cast<int>(std::lround(static_cast<double>(heat.width_px) * request.height_px / request.width_px)));
   std::vector<Vec2d> places;

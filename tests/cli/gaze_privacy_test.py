@@ -25,7 +25,7 @@ class Privacy(harness.CliTest):
         for log in ("log.csv", "gazepoint.csv"):
             for form in ([], ["--json"]):
                 said[f"inspect {log} {form}"] = self.run_ok("gaze", "inspect", log, *form, *more).stdout
-            said[f"measure {log}"] = self.run_ok("gaze", "measure", log, "--json", "--tables", "t", "--overwrite", *more).stdout
+            said[f"measure {log}"] = self.run_ok("gaze", "measure", log, "--json", "--tables", "t", "--overwrite", *harness.SCREEN, *more).stdout
             for name in self.files("t"):
                 said[f"{name} {log}"] = (self.folder / "t" / name).read_text()
         gaze = ["--gaze", "log.csv", "--size", "32x18", "--frames", "1-2"]

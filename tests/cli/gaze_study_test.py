@@ -128,20 +128,20 @@ class Study(harness.CliTest):
         said = self.run_ok(*common, "--heat-map", "heat.csv", "--heat-sigma", "1").stderr
         self.assertIn("0.4 s of gaze in the scene; as frame 3 sees it", said)
         heat = values("heat.csv")
-        self.assertEqual((len(heat), len(heat[0])), (36, 64))
+        self.assertEqual((len(heat), len(heat[0])), (270, 480))
         # All of it on one place of the box's front, which is seen from 3.5 m in front and below: in the middle, a tenth of the
         # height below it.
         sd = 3.5 * math.hypot(1, 0.2 * math.tan(0.4)) * math.tan(math.radians(1))
         highest = max(max(row) for row in heat)
         self.assertAlmostEqual(highest / (0.4 / (2 * math.pi * sd * sd)), 1, delta=0.05)
         place = next((x, y) for y, row in enumerate(heat) for x, value in enumerate(row) if value == highest)
-        self.assertAlmostEqual(place[0] + 0.5, 32, delta=1)
-        self.assertAlmostEqual(place[1] + 0.5, 21.6, delta=1)
+        self.assertAlmostEqual(place[0] + 0.5, 240, delta=3)
+        self.assertAlmostEqual(place[1] + 0.5, 162, delta=3)
         # The picture is bright there, and else as the picture behind it, darkened.
         self.write("behind.png", harness.png(64, 36, lambda x, y: (200, 100, 50)))
         self.run_ok(*common, "--heat-map", "heat.png", "--heat-sigma", "1", "--heat-picture", "behind.png")
         size, pixels = harness.read_png(self.folder / "heat.png")
-        self.assertEqual(size, (64, 36))
+        self.assertEqual(size, (480, 270))
         self.assertEqual(pixels[0][0], (130, 65, 32))
         self.assertGreater(min(pixels[place[1]][place[0]][:2]), 180)
         # What is hidden from a frame is not on it: the box's front, once the camera has gone behind the box. Gaze is straight

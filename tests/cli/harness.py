@@ -96,6 +96,28 @@ def png(width, height, pixel):
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
 
 
+def read_png(path):
+    """Size, and rows of pixels, of 8-bit RGB or RGBA."""
+    data, at, chunks = Path(path).read_bytes(), 8, {}
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        chunks[kind] = chunks.get(kind, b"") + data[at + 8:at + 8 + length]
+        at += length + 12
+    width, height, bits, color = struct.unpack(">IIBB", chunks[b"IHDR"][:10])
+    assert bits == 8 and color in (2, 6)
+    step = 3 if color == 2 else 4
+    raw, rows, above = zlib.decompress(chunks[b"IDAT"]), [], bytes(width * step)
+    for y in range(height):
+        kind, line = raw[y * (width * step + 1)], bytearray(raw[y * (width * step + 1) + 1:(y + 1) * (width * step + 1)])
+        for i in range(len(line)):
+            a, b, c = (line[i - step], above[i], above[i - step]) if i >= step else (0, above[i], 0)
+            paeth = min((a, b, c), key=lambda value: abs(a + b - c - value))
+            line[i] = (line[i] + (0, a, b, (a + b) // 2, paeth)[kind]) % 256
+        above = bytes(line)
+        rows.append([tuple(above[i:i + step]) for i in range(0, len(above), step)])
+    return (width, height), rows
+
+
 def shared_server():
     global server
     if server is None:
