@@ -89,8 +89,8 @@ struct SweepPlan {
 double student_t_quantile(double probability, int degrees_of_freedom);
 // The mean of repeats with its interval; NaN of no values.
 Interval mean_interval(const std::vector<double>& values);
-// Of errors, which are never below 0: the mean with bounds by the logarithm of the mean, whose standard error is that of
-// the mean over the mean. Without bounds where the mean is not above 0.
+// Of errors, which are never below 0: the mean with bounds by the logarithm of the mean, whose standard error is that
+// of the mean over the mean. Without bounds where the mean is not above 0.
 Interval error_interval(const std::vector<double>& values);
 // For values above zero, such as times: the geometric mean, with the interval of the mean of their logarithms.
 Interval geometric_interval(const std::vector<double>& values);
