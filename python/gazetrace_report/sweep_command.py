@@ -24,25 +24,30 @@ def main(words):
     arguments = parse(words)
     if not arguments.max_mib > 0:
         raise Problem("--max-mib: must be above 0")
-    from . import sweep_page  # what it needs is asked for after a wrong option has been told
     from .results import Results
     results = Results(arguments.results)
     output = arguments.output or results.folder / "report.html"
     check_output(output, arguments.overwrite)
     json_file(arguments.json, arguments.overwrite)
-    drawn = sweep_page.draw(results, arguments.plots is not None)
-    said = {}
-    if arguments.plots:
-        for diagram in drawn:
-            write(arguments.plots / f"{diagram.name}.svg", diagram.svg)
-            write(arguments.plots / f"{diagram.name}.pdf", diagram.pdf)
-            write(arguments.plots / f"{diagram.name}.csv", diagram.numbers.to_csv(index=False, float_format="%.9g"))
-        said["plots"] = [str(arguments.plots / f"{diagram.name}.svg") for diagram in drawn]
-    page, warnings = sweep_page.make(results, drawn, arguments.max_mib)
+    said, warnings = make(results, output, arguments.plots, arguments.max_mib)
     for warning in warnings:
         print(f"gazetrace: warning: {warning}", file=sys.stderr)
-    write(output, page)
-    size = len(page.encode())
-    text = (f"{len(drawn)} diagrams in {arguments.plots}\n" if arguments.plots else "") + f"{output}: {len(results.rows)} runs, {size / 2**20:.2f} MiB\n"
-    say(text, {**said, "page": str(output), "runs": len(results.rows), "bytes": size, "warnings": warnings}, arguments.json)
+    text = (f"{len(said['plots'])} diagrams in {arguments.plots}\n" if arguments.plots else "") + f"{output}: {len(results.rows)} runs, {said['bytes'] / 2**20:.2f} MiB\n"
+    say(text, {**said, "warnings": warnings}, arguments.json)
     return 0
+
+
+def make(results, output, plots, max_mib):
+    """Writes the page and, into the folder `plots`, the diagrams; says what was made, and warnings."""
+    from . import sweep_page
+    drawn = sweep_page.draw(results, plots is not None)
+    said = {}
+    if plots:
+        for diagram in drawn:
+            write(plots / f"{diagram.name}.svg", diagram.svg)
+            write(plots / f"{diagram.name}.pdf", diagram.pdf)
+            write(plots / f"{diagram.name}.csv", diagram.numbers.to_csv(index=False, float_format="%.9g"))
+        said["plots"] = [str(plots / f"{diagram.name}.svg") for diagram in drawn]
+    page, warnings = sweep_page.make(results, drawn, max_mib)
+    write(output, page)
+    return {**said, "page": str(output), "runs": len(results.rows), "bytes": len(page.encode())}, warnings
