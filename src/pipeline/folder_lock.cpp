@@ -46,14 +46,10 @@ constexpr useconds_t kBetweenTries_us = 20000;
 struct Range {
   std::int64_t begin = 0, end = 0;
 };
+constexpr Range kText{kTextPosition, kTextPosition + 1};
 
 struct flock region(short type, Range range) {
-  struct flock lock {};
-  lock.l_type = type;
-  lock.l_whence = SEEK_SET;
-  lock.l_start = range.begin;
-  lock.l_len = range.end - range.begin;
-  return lock;
+  return {.l_type = type, .l_whence = SEEK_SET, .l_start = range.begin, .l_len = range.end - range.begin, .l_pid = 0};
 }
 
 // 0, or the system's reason.
@@ -68,10 +64,9 @@ bool is_held(int problem) {
 
 // As set_lock(); waits for a while.
 int lock_text(int file) {
-  int problem = set_lock(file, F_WRLCK, {kTextPosition, kTextPosition + 1});
-  for (int i = 0; is_held(problem) && i < kTextTries; ++i) {
+  int problem = set_lock(file, F_WRLCK, kText);
+  for (int i = 0; is_held(problem) && i < kTextTries; ++i, problem = set_lock(file, F_WRLCK, kText)) {
     ::usleep(kBetweenTries_us);
-    problem = set_lock(file, F_WRLCK, {kTextPosition, kTextPosition + 1});
   }
   return problem;
 }
@@ -109,14 +104,8 @@ std::string this_process() {
 }
 
 std::vector<Owner> read_owners(int file) {
-  std::string text;
-  std::array<char, 4096> piece{};
-  for (ssize_t length = 0; text.size() < kLongestText; text.append(piece.data(), static_cast<std::size_t>(length))) {
-    length = ::pread(file, piece.data(), piece.size(), static_cast<off_t>(text.size()));
-    if (length <= 0) {
-      break;
-    }
-  }
+  std::string text(kLongestText, '\0');
+  text.resize(static_cast<std::size_t>(std::max<ssize_t>(::pread(file, text.data(), text.size(), 0), 0)));
   std::vector<Owner> owners;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -253,7 +242,7 @@ FolderLock::~FolderLock() {
     set_lock(file_, F_UNLCK, {kFirstPosition, kTextPosition});
     if (lock_text(file_) == 0) {
       write_owners(file_, {});
-      set_lock(file_, F_UNLCK, {kTextPosition, kTextPosition + 1});
+      set_lock(file_, F_UNLCK, kText);
     }
   }
   if (file_ >= 0) {
@@ -283,7 +272,7 @@ bool FolderLock::claim(const Files& files) const {
   }
   if (text == 0) {
     write_owners(file_, own);
-    set_lock(file_, F_UNLCK, {kTextPosition, kTextPosition + 1});
+    set_lock(file_, F_UNLCK, kText);
   }
   return true;
 }
