@@ -27,18 +27,22 @@ struct FormerOption {
   std::string option;                                             // "mode"
   std::string value;                                              // of which alone the row speaks; empty: of all
   bool takes_value = false;                                       // on the command line, and not a flag
+  std::string beside, beside_values;                              // which also has to be given; values with | between
   std::vector<std::pair<std::string, std::string>> replacements;  // options and values; "*" or empty: the given values
   std::string reason;                                             // why, or what to do instead
 };
 
-// A row of the table: former_option(FormerKind::renamed, "--old *", "--new *", "it says more").
+// A row of the table: former_option(FormerKind::renamed, "--old *", "--new *", "it says more"). A second option in
+// `before` is the one beside it.
 FormerOption former_option(FormerKind kind, const std::string& before, const std::string& now,
                            const std::string& reason);
 // src/job/schema/renamed_options.def, made once and never changed.
 const std::vector<FormerOption>& former_options();
 
-// The first row that speaks of this option with this value; nullptr: there is none.
+// The first row that speaks of this option with this value, among the options that are given with it; nullptr: there is
+// none.
 const FormerOption* find_former_option(const std::string& option, const std::string& value,
+                                       const std::vector<OptionText>& given = {},
                                        const std::vector<FormerOption>& table = former_options());
 // Whether a row refuses the option; the text then says why: "this option is gone; use `spp`".
 std::optional<std::string> refusal_of(const FormerOption& former);
@@ -48,8 +52,10 @@ struct CurrentOptions {
   std::vector<OptionText> settings;  // those that were given, where no row speaks of them
   std::string notice;                // which option stands for which, and why; empty: nothing was renamed
 };
-// Throws Error(kind, place, ...) for options and values that are refused.
-CurrentOptions current_options(const std::string& option, const std::vector<std::string>& values, ErrorKind kind,
+// `given`: what is given together with it, itself included. Where several former options are one value now, as a model
+// and its parameters, one of them gets all of it, and the others nothing. Throws Error(kind, place, ...) for options
+// and values that are refused.
+CurrentOptions current_options(const OptionText& option, const std::vector<OptionText>& given, ErrorKind kind,
                                const std::string& place, const std::vector<FormerOption>& table = former_options());
 
 }  // namespace gazetrace

@@ -32,6 +32,7 @@ struct OptionSource {
   Origin origin = Origin::given;
   std::string place = "the program";  // "job.toml:3", "the command line"
   std::string preset;                 // the preset that sets it, for the two origins of presets
+  std::string former;                 // the former option that was given, and stands for it; empty: none
 };
 std::string to_string(const OptionSource& source);  // "preset paper from the command line", "job.toml:3"
 
@@ -56,6 +57,16 @@ struct Job {
 void set_option(Job& job, const std::string& option, const std::vector<std::string>& values,
                 const OptionSource& source = {}, const std::string& place = {}, const JobSchema& schema = job_schema());
 void set_option(Job& job, const std::string& option, const std::string& value);
+// Options that are given together: on one command line, in one file, in one call. Throws Error(usage), too, where two
+// of them contradict each other, as a former option and the one that took its place do, or a density and a sampling
+// that takes none. Across calls the later value wins.
+struct GivenOption {
+  std::string option;
+  std::vector<std::string> values;
+  OptionSource source;
+  std::string place;  // as for set_option()
+};
+void set_options(Job& job, const std::vector<GivenOption>& given, const JobSchema& schema = job_schema());
 // The option's values as canonical text; empty where it is not set. Throws Error(usage) for an unknown option.
 std::vector<std::string> option_values(const Job& job, const std::string& option,
                                        const JobSchema& schema = job_schema());

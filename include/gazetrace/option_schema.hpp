@@ -477,6 +477,7 @@ struct TomlSetting {
   std::vector<std::string> values;
   std::string place;    // path:line
   std::string warning;  // of a file that was found in another place than the settings say; empty: none
+  std::string former;   // the former option that stands there; empty: none
 };
 // Where relative paths in a settings file begin. In the file's folder; where only the working folder has the file, it
 // is taken from there with a warning. The settings in a run's record begin in the working folder, as those of the run

@@ -64,7 +64,7 @@ class Reconstruction {
   // The settings under which the tracer collects what the filter needs: sums per surface of the sites that it changes.
   [[nodiscard]] TraceSettings trace_settings(TraceSettings settings) const;
   // The settings of the guides that the filter needs, for samples that are traced with `trace`: their materials are
-  // those of the samples, and a ray's cone is at least as wide as a sample's. Empty: the filter needs no guides.
+  // those of the samples. Empty: the filter needs no guides.
   [[nodiscard]] std::optional<GuideSettings> guide_settings(const TraceSettings& trace) const;
 
   // A site without samples takes its value from its neighbours. `guides`: of the map's size, nullptr unless the filter

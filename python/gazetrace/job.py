@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from . import _core
-from ._errors import GazetraceWarning
+from ._errors import Error, GazetraceWarning
 from ._exr import write_gray_exr
 from ._options import by_name, texts_of
 from .plan import Plan
@@ -43,9 +43,7 @@ class Job:
         self._density_folder = None
         if path is not None:
             self._core.add_file(os.fspath(path))
-        self._set(options)
-        if density is not None:
-            self._set_density(density)
+        self._set(options, density)
 
     @classmethod
     def from_toml(cls, text, path="settings"):
@@ -59,20 +57,20 @@ class Job:
         other = Job()
         other._core = _core.Job(self._core)
         other._density_folder = self._density_folder
-        other._set(options)
-        if density is not None:
-            other._set_density(density)
+        other._set(options, density)
         return other
 
-    def _set(self, options):
-        for name, value in options.items():
-            if value is not None:
-                self._core.set(name, texts_of(_OPTIONS.get(name), value))
+    def _set(self, options, density):
+        if "density_map" in options and not isinstance(options["density_map"], (str, os.PathLike, type(None))):
+            raise Error("`density_map` is now `density`, which takes names, files and arrays")
+        given = [(name, texts_of(_OPTIONS.get(name), value)) for name, value in options.items() if value is not None]
+        if density is not None:
+            given.append(("density", [self._density_text(density)]))
+        self._core.set(given)
 
-    def _set_density(self, density):
+    def _density_text(self, density):
         if isinstance(density, (str, os.PathLike)):
-            self._set({"density": density})
-            return
+            return os.fspath(density)
         folder = _TemporaryFolder()
         if isinstance(density, dict):
             for frame, array in density.items():
@@ -82,7 +80,7 @@ class Job:
             write_gray_exr(folder.path / "density.exr", density)
             name = "density.exr"
         self._density_folder = folder
-        self._set({"density": folder.path / name})
+        return os.fspath(folder.path / name)
 
     def __getitem__(self, name):
         """The value of an option as text; of one that may be given several times, a list; None where it is not set."""
@@ -115,8 +113,8 @@ class Job:
         """Renders the job: a `Rendering`, which yields a `Frame` for each frame when it is asked for.
 
         Whatever is wrong with the job is raised here, before the first ray. With `output`, `map` and the like the files
-        of the program are written as well, with its checks, its timing.csv and its run.json; without, nothing is
-        written.
+        of the program are written as well, with its checks, and NAME.timing.csv and NAME.run.json beside them; without,
+        nothing is written.
         """
         rendering = Rendering(_core.Rendering(self._core, scene), keep=self._density_folder)
         _warn(rendering.warnings)

@@ -56,19 +56,19 @@ std::string former_of(const std::string& keyword) {
 }
 
 // An empty list takes away what was given to an option that may be given several times.
-void set_by_keyword(Job& job, const std::string& keyword, const std::vector<std::string>& values) {
-  if (const std::string former = former_of(keyword); !former.empty()) {
-    set_option(job, former, values);
-    return;
+void set_by_keywords(Job& job, const std::vector<std::pair<std::string, std::vector<std::string>>>& keywords) {
+  std::vector<GivenOption> given;
+  for (const auto& [keyword, values] : keywords) {
+    const std::string former = former_of(keyword);
+    const std::string name = former.empty() ? option_of(keyword, job_schema().list()) : former;
+    if (values.empty() && former.empty() && job_schema().find(name)->shape == OptionShape::repeated) {
+      job_schema().find(name)->assign(job.settings, values, name);
+      job.sources[name] = {};
+    } else {
+      given.push_back({name, values, {}, {}});
+    }
   }
-  const std::string name = option_of(keyword, job_schema().list());
-  const OptionOf<JobSettings>& option = *job_schema().find(name);
-  if (values.empty() && option.shape == OptionShape::repeated) {
-    option.assign(job.settings, values, name);
-    job.sources[name] = {};
-  } else {
-    set_option(job, name, values);
-  }
+  set_options(job, given);
 }
 
 }  // namespace
@@ -106,7 +106,7 @@ void bind_options(py::module_& module) {
   py::class_<Job>(module, "Job")
       .def(py::init<>())
       .def(py::init<const Job&>())
-      .def("set", &set_by_keyword)
+      .def("set", &set_by_keywords)
       .def("add_toml",
            [](Job& job, const std::string& text, const std::string& path) {
              add_toml(job, text, path, "gazetrace.options() lists every option");

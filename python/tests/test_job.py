@@ -13,6 +13,17 @@ class JobTest(TestCase):
         self.assertSays("did you mean 'guided'", "usage", gazetrace.Job().replace, filter="guide")
         self.assertSays("give one of these", "usage", gazetrace.Job, density="guided")
 
+    def test_what_is_given_together_does_not_contradict_itself(self):
+        self.assertSays("which of them holds?", "usage", gazetrace.Job, sampling="uniform", density="mar")
+        self.assertSays("`budget_spp`, which makes `spp` 2,", "usage", gazetrace.Job, spp=32, budget_spp=2)
+        self.assertEqual(gazetrace.Job(sampling="uniform").replace(density="mar")["sampling"], "density")
+
+    def test_former_options_are_understood_together(self):
+        job = gazetrace.Job(region_angles=(4, 10), angle_reading="eccentricity", falloff_mar_slope=0.03, falloff="mar")
+        self.assertEqual(job["region_eccentricities"], "4,10")
+        self.assertEqual(job["density"], "mar:slope=0.03")
+        self.assertSays("`density_map` is now `density`", "usage", gazetrace.Job, density_map=[[1.0, 2.0], [3.0, 4.0]])
+
     def test_names_are_those_of_the_schema_with_underscores(self):
         names = [option["name"] for option in gazetrace.options()]
         self.assertIn("gaze_latency", names)

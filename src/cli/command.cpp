@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <string_view>
 
 #include "cli/exit_codes.hpp"
@@ -34,30 +35,6 @@ std::string joined(const std::vector<std::string>& texts) {
 
 std::string flags_of(const Option& flag) {
   return flag.flags + (flag.is_on_by_default() ? ",!--no-" + flag.name : "");
-}
-
-using SetOption = std::function<void(const std::string& option, const std::vector<std::string>& values)>;
-
-// Renamed options that are no longer in the schema. They come before the others, which therefore win, and no help has
-// them.
-void bind_former_options(CLI::App& app, const SetOption& set) {
-  for (const FormerOption& former : former_options()) {
-    const std::string flag = "--" + former.option;
-    if (former.kind != FormerKind::renamed || job_schema().find(former.option) != nullptr ||
-        app.get_option_no_throw(flag) != nullptr) {
-      continue;
-    }
-    if (former.takes_value) {
-      app.add_option(flag,
-                     [set, name = former.option](const CLI::results_t& results) {
-                       set(name, results);
-                       return true;
-                     })
-          ->group("");
-    } else {
-      app.add_flag_function(flag, [set, name = former.option](std::int64_t) { set(name, {"true"}); })->group("");
-    }
-  }
 }
 
 }  // namespace
@@ -90,13 +67,40 @@ void bind_options(CLI::App& app, const OptionList& options, const TakeOption& ta
   }
 }
 
+// No help has them.
+void bind_former_options(CLI::App& app, const OptionList& options, const TakeFormer& take,
+                         const std::function<void()>& then) {
+  app.callback(then);
+  for (const FormerOption& former : former_options()) {
+    const std::string flag = "--" + former.option;
+    const auto& now = former.replacements;
+    const bool is_known = std::all_of(now.begin(), now.end(),
+                                      [&](const auto& one) { return find_option(options, one.first) != nullptr; });
+    if (now.empty() || !is_known || find_option(options, former.option) != nullptr ||
+        app.get_option_no_throw(flag) != nullptr) {
+      continue;
+    }
+    if (former.takes_value) {
+      app.add_option(flag,
+                     [take, name = former.option](const CLI::results_t& results) {
+                       take(name, results);
+                       return true;
+                     })
+          ->group("");
+    } else {
+      app.add_flag_function(flag, [take, name = former.option](std::int64_t) { take(name, {"true"}); })->group("");
+    }
+  }
+}
+
 void bind_job_options(CLI::App& app, Job& job) {
-  const auto set = [&job](const std::string& option, const std::vector<std::string>& values) {
-    set_option(job, option, values, {Origin::given, "the command line", {}});
+  const auto given = std::make_shared<std::vector<GivenOption>>();
+  const auto take = [given](const std::string& option, const std::vector<std::string>& values) {
+    given->push_back({option, values, {Origin::given, "the command line", {}, {}}, {}});
   };
-  bind_former_options(app, set);
+  bind_former_options(app, job_schema().list(), take, [given, &job] { set_options(job, *given); });
   bind_options(app, job_schema().list(),
-               [set](const Option& option, const std::vector<std::string>& values) { set(option.name, values); });
+               [take](const Option& option, const std::vector<std::string>& values) { take(option.name, values); });
 }
 
 void read_job_config(Job& job, const std::string& command, const std::string& path) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gazetrace/error.hpp"
+#include "gazetrace/former_options.hpp"
 #include "gazetrace/job.hpp"
 #include "gazetrace/option_schema.hpp"
 
@@ -40,6 +41,12 @@ struct Command {
 using TakeOption = std::function<void(const Option& option, const std::vector<std::string>& values)>;
 void bind_options(CLI::App& app, const OptionList& options, const TakeOption& take);
 
+// Options that were renamed to some of these, which a command line gives together: `take` gets each, and
+// `then` is called after parsing.
+using TakeFormer = std::function<void(const std::string& option, const std::vector<std::string>& values)>;
+void bind_former_options(CLI::App& app, const OptionList& options, const TakeFormer& take,
+                         const std::function<void()>& then);
+
 // The options of a job: `render` and `plan`. `job` must live until parsing is done.
 void bind_job_options(CLI::App& app, Job& job);
 void read_job_config(Job& job, const std::string& command, const std::string& path);
@@ -64,6 +71,12 @@ class CommandOptions {
       schema_.find(option.name)->assign(settings, values, "`" + option.name + "`");
       given_.insert(option.name);
     });
+    bind_former_options(
+        app, schema_.list(),
+        [this](const std::string& option, const std::vector<std::string>& values) {
+          former_.emplace_back(option, values);
+        },
+        [this, &settings] { set_former(settings); });
   }
   void read_config(S& settings, const std::string& command, const std::string& path) const {
     for (const TomlSetting& setting :
@@ -78,8 +91,23 @@ class CommandOptions {
   }
 
  private:
+  void set_former(S& settings) {
+    for (const OptionText& former : former_) {
+      const std::string place = "`" + former.first + "`";
+      const CurrentOptions current = current_options(former, former_, ErrorKind::usage, place);
+      for (const auto& [name, values] : current.settings) {
+        if (!given_.insert(name).second) {
+          throw Error(ErrorKind::usage, place, "it is now `" + name + "`, which is given, too: which of them holds?");
+        }
+        schema_.find(name)->assign(settings, values, place);
+      }
+      print_warnings({current.notice});
+    }
+  }
+
   OptionSchema<S> schema_;
   std::set<std::string> given_;
+  std::vector<OptionText> former_;
 };
 // Writes a result to stdout. A reader that has gone away (head, a closed pager) is no error.
 void print_result(const std::string& text);

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "cli/option_names.hpp"
-
 namespace gazetrace {
 namespace {
 
@@ -79,7 +77,8 @@ ValueWords values_of(const OptionWords& option) {
   while (at <= option.value.size()) {
     const std::size_t end = std::min(option.value.find('|', at), option.value.size());
     const std::string part = option.value.substr(at, end - at);
-    if (is_plain_word(part) && option.value.find('|') != std::string::npos) {
+    const bool is_new = std::find(values.names.begin(), values.names.end(), part) == values.names.end();
+    if (is_new && is_plain_word(part) && option.value.find('|') != std::string::npos) {
       values.names.push_back(part);
     }
     for (const char* file : {"FILE", "PATTERN", "DIR", "FOLDER", "PATH", "OUT", "PLAN", "JOB", "MAP", "PROGRAM"}) {

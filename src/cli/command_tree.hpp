@@ -37,4 +37,8 @@ struct ValueWords {
 };
 ValueWords values_of(const OptionWords& option);
 
+// The names that an option such as --filter accepts, as 'gazetrace list' prints them; empty: it takes other values.
+// Views are left out, which depend on the OpenColorIO config.
+std::vector<std::string> names_of_option(const std::string& flag);
+
 }  // namespace gazetrace

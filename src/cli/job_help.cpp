@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -42,8 +43,10 @@ class JobHelp : public CLI::Formatter {
       text += topic(*app, group, false, mode);
     }
     if (mode != CLI::AppFormatMode::All) {
-      text += fmt::format("\nExample:\n  {}\n\n--help-all prints all {} options by topic.\n", example_,
-                          job_schema().options().size());
+      const auto& all = job_schema().options();
+      const auto count =
+          std::count_if(all.begin(), all.end(), [](const auto& one) { return one.group != kFarmHeading; });
+      text += fmt::format("\nExample:\n  {}\n\n--help-all prints {} options by topic.\n", example_, count);
     }
     return text + fmt::format("{} prints those of machines that share a sequence.\n", kFarmPage) + make_footer(app);
   }

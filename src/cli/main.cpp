@@ -90,6 +90,9 @@ std::string unknown_option_text(const std::string& flag, const CLI::App& command
       return "'" + flag + "' is now --" + now.front().first + "; " + former->reason;
     }
   }
+  if (flag.starts_with("--") && job_schema().find(flag.substr(2)) != nullptr) {
+    return "'" + flag + "' is an option of 'gazetrace render', and none of '" + words + "'";
+  }
   return unknown_among_many("option", flag, known);
 }
 
@@ -98,8 +101,8 @@ std::string unknown_word_text(const CLI::App& app, const CLI::App* command, cons
   const std::vector<std::string> commands = names_within(command == nullptr ? app : *command);
   for (const std::string& word : app.remaining(true)) {
     const std::string name = word.substr(0, word.find('='));
-    if (commands.empty() && word.starts_with('-')) {
-      return unknown_option_text(name, *command, words);
+    if (word.starts_with('-')) {
+      return unknown_option_text(name, command == nullptr ? app : *command, words);
     }
     if (!commands.empty()) {
       return command == nullptr ? unknown_among_many("command", name, commands)

@@ -81,6 +81,14 @@ std::string option_section(const Option& option) {
   return text + "\n";
 }
 
+// A bar would end a cell of a table.
+std::string in_cell(std::string text) {
+  for (std::size_t bar = text.find('|'); bar != std::string::npos; bar = text.find('|', bar + 2)) {
+    text.insert(bar, 1, '\\');
+  }
+  return text;
+}
+
 // "--mode fast", and what is said of it.
 using FormerLine = std::pair<std::string, std::string>;
 
@@ -95,7 +103,11 @@ std::vector<FormerLine> former_lines() {
       now += (now.empty() ? "passed over; " : "; ") + former.reason;
     }
     const std::string given = former.value.empty() && former.takes_value ? "*" : former.value;
-    lines.emplace_back(fmt::format("--{}{}{}", former.option, given.empty() ? "" : " ", given), with_flags(now));
+    std::string before = fmt::format("--{}{}{}", former.option, given.empty() ? "" : " ", given);
+    if (!former.beside.empty()) {
+      before += fmt::format(" --{} {}", former.beside, former.beside_values);
+    }
+    lines.emplace_back(before, with_flags(now));
   }
   return lines;
 }
@@ -106,7 +118,7 @@ std::string former_options_as_markdown() {
       "differently "
       "(`gazetrace help former-options`).\nA `*` is the value that was given.\n\n| option | now |\n| --- | --- |\n";
   for (const auto& [option, now] : former_lines()) {
-    text += fmt::format("| `{}` | {} |\n", option, escaped(now));
+    text += fmt::format("| `{}` | {} |\n", in_cell(option), in_cell(escaped(now)));
   }
   return text;
 }

@@ -90,6 +90,13 @@ void check_density(const DensitySampling& density) {
     return;
   }
   if (!density.model.empty()) {
+    const std::size_t parameters = density_by_name(density.model).parameters.size();
+    if (!density.values.empty() && density.values.size() != parameters) {
+      throw Error(ErrorKind::usage, kPlace,
+                  fmt::format("{} has {} parameters, and {} values are given", density.model, parameters,
+                              density.values.size()),
+                  "give all of them, or none");
+    }
     named_density(to_string(density), kPlace);
     return;
   }

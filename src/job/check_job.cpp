@@ -12,7 +12,7 @@
 #include "gazetrace/resolve.hpp"
 #include "job/outputs.hpp"
 #include "job/quality_defaults.hpp"
-#include "job/registry_names.hpp"
+#include "job/schema/parts.hpp"
 #include "pipeline/quality/adaptive_rates.hpp"
 
 namespace gazetrace {

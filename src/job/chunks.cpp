@@ -33,7 +33,7 @@ std::vector<std::int32_t> numbers_of(const FramePlan& plan) {
   return frames;
 }
 
-// Samples that a pilot or a clock decides are not known before the frame is rendered.
+// Samples that a pilot or a target decides are not known before the frame is rendered.
 bool samples_are_known(const FoveationSettings& foveation) {
   return !looks_first(foveation.sampling) && !foveation.target.is_given();
 }

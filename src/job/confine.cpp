@@ -69,9 +69,11 @@ void check_confined(const Option& option, const std::vector<std::string>& values
 
 void check_confined(const std::string& text, const std::string& path, const std::string& remedy) {
   const OptionList options = job_schema().list();
-  for (const auto& [key, node] : parse_toml(text, path).members) {
+  const TomlNode root = parse_toml(text, path);
+  const std::vector<OptionText> given = given_in(root, path);
+  for (const auto& [key, node] : root.members) {
     for (const TomlSetting& setting :
-         toml_settings(key, node, options, path, remedy, PathsBegin::beside_settings, TomlChecks::names)) {
+         toml_settings(key, node, given, options, path, remedy, PathsBegin::beside_settings, TomlChecks::names)) {
       check_confined(*find_option(options, setting.name), setting.values, path, setting.place);
     }
   }

@@ -34,6 +34,25 @@ std::vector<std::string> existing(const std::vector<std::string>& paths) {
   return found;
 }
 
+// What no option says: a program sets it.
+void add_density_of_program(const JobSettings& job, std::vector<std::pair<std::string, std::string>>& parts) {
+  const auto* density = std::get_if<DensitySampling>(&job.foveation.sampling);
+  const DensitySampling usual;
+  if (density == nullptr) {
+    return;
+  }
+  if (density->full_rate_spp != usual.full_rate_spp || density->least_density != usual.least_density) {
+    parts.emplace_back("rates of the density", fmt::format("{} {}", density->full_rate_spp, density->least_density));
+  }
+  std::string points;
+  for (const Vec2d& point : density->curve.path.empty() ? density->curve.points : std::vector<Vec2d>()) {
+    points += fmt::format("{} {}\n", point.x, point.y);
+  }
+  if (!points.empty()) {
+    parts.emplace_back("curve of the density", points);
+  }
+}
+
 std::string curve_file(const JobSettings& job) {
   const auto* density = std::get_if<DensitySampling>(&job.foveation.sampling);
   return density == nullptr ? std::string() : density->curve.path;
@@ -81,6 +100,7 @@ std::string digest_job(const JobSettings& job, const std::map<std::string, std::
   for (const std::string& path : density_picture_files(job.foveation)) {
     parts.emplace_back("density map " + fs::path(path).filename().string(), digest_of(path));
   }
+  add_density_of_program(job, parts);
   parts.emplace_back("ocio file", existing({ocio_file(job)}).empty() ? ocio_file(job) : digest_of(ocio_file(job)));
   return digest_settings(parts);
 }

@@ -125,7 +125,24 @@ std::vector<std::string> toml_values(const TomlNode& node, const Option& option,
   return {fmt::format("{}", fmt::join(values, ","))};
 }
 
-std::vector<TomlSetting> toml_settings(const std::string& key, const TomlNode& node, const OptionList& options,
+std::vector<OptionText> given_in(const TomlNode& table, const std::string& path) {
+  Option any;
+  any.shape = OptionShape::repeated;  // takes any values
+  std::vector<OptionText> given;
+  for (const auto& [key, node] : table.members) {
+    const bool is_value = node.kind == TomlNode::Kind::scalar ||
+                          (node.kind == TomlNode::Kind::array &&
+                           std::all_of(node.items.begin(), node.items.end(),
+                                       [](const TomlNode& item) { return item.kind == TomlNode::Kind::scalar; }));
+    if (is_value) {
+      given.emplace_back(key, toml_values(node, any, path));
+    }
+  }
+  return given;
+}
+
+std::vector<TomlSetting> toml_settings(const std::string& key, const TomlNode& node,
+                                       const std::vector<OptionText>& beside, const OptionList& options,
                                        const std::string& path, const std::string& remedy, PathsBegin paths,
                                        TomlChecks checks) {
   const std::string place = toml_place(path, node);
@@ -137,11 +154,11 @@ std::vector<TomlSetting> toml_settings(const std::string& key, const TomlNode& n
   former.shape = OptionShape::repeated;  // takes any values
   const std::vector<std::string> given = toml_values(node, present != nullptr ? *present : former, path);
   // The record of a run of an earlier version states all of its settings, those that are gone, too.
-  const FormerOption* const known = find_former_option(key, given.size() == 1 ? given.front() : std::string());
+  const FormerOption* const known = find_former_option(key, given.size() == 1 ? given.front() : std::string(), beside);
   if (paths == PathsBegin::working_folder && known != nullptr && refusal_of(*known)) {
     return {};
   }
-  const CurrentOptions current = current_options(key, given, ErrorKind::input, place + ": " + key);
+  const CurrentOptions current = current_options({key, given}, beside, ErrorKind::input, place + ": " + key);
   std::vector<TomlSetting> settings;
   for (const auto& [name, values] : current.settings) {
     const Option* option = find_option(options, name);
@@ -151,11 +168,14 @@ std::vector<TomlSetting> toml_settings(const std::string& key, const TomlNode& n
     if (values.empty()) {
       continue;  // an empty array sets nothing
     }
-    TomlSetting setting{name, values_for(*option, values), place, {}};
+    TomlSetting setting{name, values_for(*option, values), place, {}, current.notice.empty() ? "" : key};
     if (checks == TomlChecks::values) {
       try {
         option->check(setting.values, place + ": " + name);
       } catch (const Error& error) {
+        if (paths == PathsBegin::working_folder && names_file(*option, setting.values.front())) {
+          continue;  // a run that has ended needs no file, which may be gone since
+        }
         throw Error(ErrorKind::input, "", error.what());
       }
     }
@@ -178,8 +198,10 @@ std::vector<TomlSetting> toml_settings(const std::string& key, const TomlNode& n
 std::vector<TomlSetting> read_toml_settings(const std::string& text, const std::string& path, const OptionList& options,
                                             const std::string& remedy, PathsBegin paths) {
   std::vector<TomlSetting> settings;
-  for (const auto& [key, node] : parse_toml(text, path).members) {
-    for (TomlSetting& setting : toml_settings(key, node, options, path, remedy, paths)) {
+  const TomlNode root = parse_toml(text, path);
+  const std::vector<OptionText> given = given_in(root, path);
+  for (const auto& [key, node] : root.members) {
+    for (TomlSetting& setting : toml_settings(key, node, given, options, path, remedy, paths)) {
       settings.push_back(std::move(setting));
     }
   }

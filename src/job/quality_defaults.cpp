@@ -4,11 +4,11 @@
 namespace gazetrace {
 
 Job with_quality_defaults(Job job, Decisions* decisions) {
-  FoveationSettings& foveation = job.settings.foveation;
+  const FoveationSettings& foveation = job.settings.foveation;
   const bool is_open =
       !job.sources.contains("sampling") && to_string(foveation.sampling) == to_string(FoveationSettings().sampling);
   if (foveation.target.is_given() && is_open) {
-    foveation.sampling = AdaptiveSampling{};
+    job_schema().find("sampling")->assign(job.settings, {"adaptive"}, "`sampling`");  // which keeps what others are
     if (decisions != nullptr) {
       decisions->emplace_back("sampling", "adaptive, since a quality is stated");
     }

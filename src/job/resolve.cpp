@@ -158,14 +158,24 @@ void warn_of_filter(const JobSettings& job, Warnings& warnings) {
   }
 }
 
-// Of a setting whose meaning changed in this version.
-void warn_of_mean_rate(const FoveationSettings& foveation, Warnings& warnings) {
-  if (foveation.spp && std::holds_alternative<DensitySampling>(foveation.sampling) &&
-      !follows_picture(foveation.sampling)) {
+// Of a setting whose meaning changed in this version, and which was not given by its former name.
+void warn_of_mean_rate(const Job& job, Warnings& warnings) {
+  const FoveationSettings& foveation = job.settings.foveation;
+  const auto source = job.sources.find("spp");
+  const OptionSource given = source == job.sources.end() ? OptionSource() : source->second;
+  if (!foveation.spp || !given.former.empty()) {
+    return;
+  }
+  if (std::holds_alternative<DensitySampling>(foveation.sampling) && !follows_picture(foveation.sampling)) {
     warnings.push_back(
         fmt::format("`spp` {} is the mean of a frame; it was the full rate of a density before, which the "
                     "place has that the eye looks at",
                     *foveation.spp));
+  } else if (regions_of(foveation.sampling) != nullptr && given.origin == Origin::file) {
+    warnings.push_back(
+        fmt::format("`spp` {} of {} is the mean of a frame, to which the counts of regions are scaled; "
+                    "it meant nothing to regions before",
+                    *foveation.spp, to_string(given)));
   }
 }
 
@@ -174,7 +184,7 @@ void warn_of_inputs(const CameraPath& camera, const GazeLog* log, ResolveScope s
   append(resolved.warnings, camera.warnings);
   warn_of_filter(job, resolved.warnings);
   if (log != nullptr) {
-    warn_of_mean_rate(job.foveation, resolved.warnings);
+    warn_of_mean_rate(resolved.job, resolved.warnings);
     append(resolved.warnings, log->warnings);
   }
   append(resolved.warnings, resolved.plan.warnings);

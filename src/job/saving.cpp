@@ -26,7 +26,7 @@ std::string remedies(const JobSettings& job) {
   if (regions_of(job.foveation.sampling) != nullptr) {
     return "smaller `region-eccentricities`, or a `screen` that fills more of the field of view, would change that";
   }
-  return "a larger `size`, a `density` relative-to=fovea or `sampling` regions would change that";
+  return "a larger `size`, a `density` such as acuity:relative-to=fovea or `sampling` regions would change that";
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ bool names_file(const Option& option, const std::string& value) {
   std::error_code ignored;
   return option.unit.find("FILE") != std::string::npos &&
          (value.find('/') != std::string::npos || value.ends_with(".csv") || value.ends_with(".exr") ||
-          fs::exists(value, ignored));
+          fs::is_regular_file(value, ignored));
 }
 
 LocatedFile located_file(const Option& option, const std::string& value, const std::string& settings_path) {
@@ -72,6 +72,12 @@ LocatedFile located_file(const Option& option, const std::string& value, const s
     return {value, {}};
   }
   const fs::path beside = (folder / value).lexically_normal();
+  // A folder may have the name of a model, of which an option takes no files.
+  const bool takes_folders = option.unit == "FILE" || option.unit == "PATTERN";
+  std::error_code ignored;
+  if (!takes_folders && (fs::is_directory(beside, ignored) || fs::is_directory(value, ignored))) {
+    return {value, {}};
+  }
   if (is_there(beside)) {
     return {within_working_folder(beside), {}};
   }

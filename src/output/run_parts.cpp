@@ -127,7 +127,7 @@ std::vector<RunPart> read_run_parts(const std::string& where) {
   }
   if (parts.empty()) {
     throw Error(ErrorKind::input, where, "contains no parts of a run (NAME.timing.<part>.csv)",
-                "give the folder that the parts were rendered into");
+                "give the folder that chunks (`chunk` K/N) were rendered into, or the name of their pictures");
   }
   std::move(without_rows.begin(), without_rows.end(), std::back_inserter(parts));
   check_one_sequence(parts);

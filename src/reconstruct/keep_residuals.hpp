@@ -17,7 +17,7 @@ namespace gazetrace {
 // (SparseFrame::half_difference) less what the picture has of it. Where that is in doubt, the share is what it is on
 // average over a wider neighbourhood. No block is changed by more than the larger of two amounts: a tenth of its light,
 // and what its own samples say. With more and more samples v falls to 0, and the picture becomes the samples'
-// own mean. Pixels that PassThrough keeps are not changed.
+// own mean.
 void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
                     const Image<std::uint32_t>& site_of_pixel, SurfacePicture& picture);
 

@@ -50,8 +50,9 @@ class RenderOptions {
     return names;
   }
   // Adds what a key sets, as text that its options take. `also`: keys that are known beside the options.
+  // `given`: what stands in the same table.
   void add(const std::string& key, const TomlNode& node, const std::string& path, const std::vector<std::string>& also,
-           std::vector<Assignment>& assignments) const {
+           const std::vector<OptionText>& given, std::vector<Assignment>& assignments) const {
     const std::string place = toml_place(path, node);
     std::vector<Option> others(also.size());
     OptionList known = options_;
@@ -60,15 +61,15 @@ class RenderOptions {
       known.push_back(&others[i]);
     }
     const std::vector<TomlSetting> settings =
-        toml_settings(key, node, known, path, "'gazetrace render --print-config' lists every option");
-    if (settings.empty()) {
+        toml_settings(key, node, given, known, path, "'gazetrace render --print-config' lists every option");
+    if (settings.empty() && find_former_option(key, {}) == nullptr) {
       refuse(place, fmt::format("'{}' is empty", key), "give a value, or leave it out");
     }
     for (const TomlSetting& setting : settings) {
       if (!is_allowed(find(setting.name))) {
         refuse(place, fmt::format("'{}' has no place in a sweep", key), "leave it out");
       }
-      assignments.push_back({setting.name, setting.values, place, setting.warning});
+      assignments.push_back({setting.name, setting.values, place, setting.warning, setting.former});
     }
   }
 
@@ -125,6 +126,7 @@ std::vector<SweepFileScene> read_named(const TomlNode& root, const std::string& 
   for (const TomlNode* table : tables_of(root, name, path)) {
     SweepFileScene one;
     one.place = toml_place(path, *table);
+    const std::vector<OptionText> given = given_in(*table, path);
     std::vector<std::string> also{"name"};
     for (const auto& [short_name, option] : short_names) {
       also.push_back(short_name);
@@ -135,7 +137,7 @@ std::vector<SweepFileScene> read_named(const TomlNode& root, const std::string& 
         continue;
       }
       const auto found = short_names.find(key);
-      options.add(found == short_names.end() ? key : found->second, value, path, also, one.options);
+      options.add(found == short_names.end() ? key : found->second, value, path, also, given, one.options);
     }
     if (one.name.empty() || one.name.find('/') != std::string::npos) {
       refuse(one.place, fmt::format("a [[{}]] needs a name without slashes", name), "add name = \"...\"");
@@ -168,15 +170,15 @@ double read_scale(const TomlNode& node, const std::string& path) {
   return scale;
 }
 
-void add_option(const std::string& key, const TomlNode& node, const RenderOptions& options, const std::string& path,
-                SweepFileSetting& setting) {
+void add_option(const std::string& key, const TomlNode& node, const std::vector<OptionText>& given,
+                const RenderOptions& options, const std::string& path, SweepFileSetting& setting) {
   const std::string place = toml_place(path, node);
   if (key == kScale) {
     setting.resolution_scale = read_scale(node, path);
     return;
   }
   std::vector<Assignment> added;
-  options.add(key, node, path, {kScale}, added);
+  options.add(key, node, path, {kScale}, given, added);
   for (Assignment& assignment : added) {
     const Option& option = options.find(assignment.option);
     if (is_of_scene(option) || option.is(Trait::gaze_source)) {
@@ -212,7 +214,7 @@ std::vector<SweepFileSetting> read_settings(const TomlNode& root, const RenderOp
       if (key == "label") {
         setting.label = toml_scalar(value, path);
       } else {
-        add_option(key, value, options, path, setting);
+        add_option(key, value, given_in(*table, path), options, path, setting);
       }
     }
     setting.label = label_of(setting);
@@ -241,7 +243,7 @@ std::vector<SweepFileSetting> read_settings(const TomlNode& root, const RenderOp
     for (const SweepFileSetting& setting : settings) {
       for (const TomlNode& value : values.items) {
         SweepFileSetting alone;
-        add_option(key, value, options, path, alone);
+        add_option(key, value, {}, options, path, alone);
         SweepFileSetting both = setting;
         both.options.insert(both.options.end(), alone.options.begin(), alone.options.end());
         both.resolution_scale *= alone.resolution_scale;
@@ -290,7 +292,7 @@ void read_reference(const TomlNode& root, const RenderOptions& options, SweepFil
       alone.members.push_back({key, value});
       read_table(own, alone, file.reference, file);
     } else {
-      options.add(key, value, file.path, names_of(own.list()), file.reference.options);
+      options.add(key, value, file.path, names_of(own.list()), given_in(*table, file.path), file.reference.options);
     }
   }
   if (file.reference.scramblings < 4 || file.reference.scramblings % 2 != 0 || file.reference.scramblings > 1024) {
@@ -402,7 +404,7 @@ SweepFile read_sweep_file(const std::string& path, const JobSchema& schema) {
   if (const TomlNode* common = root.find("common")) {
     checked_kind(*common, TomlNode::Kind::table, path, "'common' is a table; write [common]");
     for (const auto& [key, value] : common->members) {
-      options.add(key, value, path, {}, file.common);
+      options.add(key, value, path, {}, given_in(*common, path), file.common);
     }
   }
   file.scenes = read_named(root, "scene", options, {{"path", "scene"}, {"environment", "env"}}, {"scene"}, path);

@@ -27,6 +27,7 @@ struct Assignment {
   std::vector<std::string> values;
   std::string place;    // file:line
   std::string warning;  // of a file that was found in another place than the plan says; empty: none
+  std::string former;   // the former option that stands there; empty: none
 };
 
 struct SweepFileScene {

@@ -26,15 +26,19 @@ bool is_after_sampling(const Option& option) {
 
 void assign(Job& job, const std::vector<Assignment>& options, const JobSchema& schema,
             const std::function<bool(const Option&)>& wanted = {}) {
+  std::vector<GivenOption> together;
   for (const Assignment& given : options) {
     if (!given.warning.empty()) {
       job.warnings.push_back(given.warning);
     }
     if (!wanted || wanted(*schema.find(given.option))) {
-      set_option(job, given.option, given.values, {Origin::file, given.place, {}}, given.place + ": " + given.option,
-                 schema);
+      together.push_back({given.option,
+                          given.values,
+                          {Origin::file, given.place, {}, given.former},
+                          given.place + ": " + given.option});
     }
   }
+  set_options(job, together, schema);
 }
 
 // The effective values of another job, including those that its presets set.
@@ -44,7 +48,7 @@ void take(Job& job, const Job& other, const JobSchema& schema, const std::functi
     if (!values.empty() && values != option.defaults && wanted(option)) {
       const auto source = other.sources.find(option.name);
       const std::string place = source == other.sources.end() ? std::string() : source->second.place;
-      set_option(job, option.name, values, {Origin::file, place, {}}, option.name, schema);
+      set_option(job, option.name, values, {Origin::file, place, {}, {}}, option.name, schema);
     }
   }
 }
@@ -116,7 +120,7 @@ Job reference_job(const SweepRequest& request, const SweepFileScene& scene, cons
        {std::pair("sampling", "uniform"), std::pair("spp", "256"), std::pair("filter", "none"),
         std::pair("accumulate", "off"), std::pair("russian-roulette", "false"), std::pair("clamp-indirect", "0"),
         std::pair("learn-light", "false")}) {
-    set_option(job, option, {value}, {Origin::file, {}, {}}, option, schema);
+    set_option(job, option, {value}, {Origin::file, {}, {}, {}}, option, schema);
   }
   assign(job, request.file.reference.options, schema);
   check_reference_has_no_target(job, request.file.reference.options);

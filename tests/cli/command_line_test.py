@@ -54,11 +54,15 @@ class Help(harness.CliTest):
         self.assertNotIn("spp", farm)
         self.assertEqual(set(listed), set(everything + farm) - {"help", "help-all", "print-config", "json"})
         self.assertEqual(set(everything) & set(farm), set())
+        told = int(re.search(r"--help-all prints (\d+) options", self.run_ok("render", "--help").stdout).group(1))
+        self.assertEqual(told, len(set(listed) - set(farm)))
         shown = self.options(self.run_ok("render", "--help").stdout)
         self.assertLess(set(shown), set(everything))
         for command in (["plan"], ["gaze", "objects"], ["gaze", "aois"]):
             self.assertLess(len(self.run_ok(*command, "--help").stdout), len(self.run_ok(*command, "--help-all").stdout) / 4)
         self.assertEqual(self.run_ok("help", "render").stdout, self.run_ok("render", "--help").stdout)
+        for page in ("farm-options", "former-options"):
+            self.assert_refused(["help", page, "extra"], [page])
 
 
 class GivenTwice(harness.CliTest):

@@ -93,7 +93,8 @@ class DensityMap(harness.CliTest):
         ]:
             with self.subTest(arguments=arguments):
                 self.assert_refused(["render", "box.gltf", *VIEW, *arguments, "-o", "x/x.exr"], words)
-        idle = self.run_ok("render", "box.gltf", *VIEW, "--density", "good.exr", "--sampling", "uniform", "-o", "idle/f.exr").stderr
+        self.write("job.toml", 'density = "good.exr"\n')
+        idle = self.run_ok("render", "box.gltf", *VIEW, "--config", "job.toml", "--sampling", "uniform", "-o", "idle/f.exr").stderr
         self.assertIn("--density does nothing with --sampling uniform", idle)
 
 

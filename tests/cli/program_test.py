@@ -95,6 +95,11 @@ class Talk(harness.CliTest):
         self.assertIn("report", complete("gaze", ""))
         self.assertIn("--config", complete("plan", "--conf"))
 
+    def test_completion_offers_each_name_once(self):
+        names = re.search(r"'gazetrace render --sampling'\) names='([^']*)'", self.run_ok("completion", "bash").stdout).group(1).split()
+        self.assertIn("adaptive", names)
+        self.assertEqual(sorted(names), sorted(set(names)))
+
     def test_completion_names_every_option_in_every_shell(self):
         options = [option["name"] for option in json.loads(self.run_ok("list", "options", "--json").stdout)]
         for shell, form in (("bash", "--{} "), ("zsh", "'--{}:"), ("fish", " -l {} ")):

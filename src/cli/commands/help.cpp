@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
@@ -17,12 +19,12 @@ constexpr const char* kFormerOptions = "former-options";
 constexpr const char* kFarmOptions = "farm-options";
 
 int run_help(const CLI::App& program, const std::vector<std::string>& words) {
-  if (words == std::vector<std::string>{kFormerOptions}) {
-    print_result(former_options_as_text());
-    return exit_done;
-  }
-  if (words == std::vector<std::string>{kFarmOptions}) {
-    print_result(farm_options_as_text());
+  const std::string first = words.empty() ? std::string() : words.front();
+  if (first == kFormerOptions || first == kFarmOptions) {
+    if (words.size() > 1) {
+      throw Error(ErrorKind::usage, "help", fmt::format("'{}' has no pages within it", first));
+    }
+    print_result(first == kFarmOptions ? farm_options_as_text() : former_options_as_text());
     return exit_done;
   }
   const CLI::App* found = &program;

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
+#include "cli/command_tree.hpp"
 #include "cli/exit_codes.hpp"
 #include "cli/json_output.hpp"
-#include "cli/option_names.hpp"
 #include "cli/option_reference.hpp"
 #include "gazetrace/aovs.hpp"
 #include "gazetrace/compare.hpp"

@@ -142,8 +142,7 @@ void check_counts_are_known(const FoveationSettings& foveation) {
                 "give another one, or render and read timing.csv");
   }
   if (foveation.target.is_given()) {
-    throw Error(ErrorKind::usage, "`counts`",
-                "counts that follow from a target or a time are known once it is rendered",
+    throw Error(ErrorKind::usage, "`counts`", "counts that follow from a target are known once it is rendered",
                 "give `spp`, or render and read timing.csv");
   }
 }

@@ -158,6 +158,7 @@ Command add_render_command(CLI::App& app, const Invocation& invocation) {
   add_json_option(app, arguments->json, arguments->job.settings.overwrite);
   const auto run = [arguments, &invocation] {
     if (arguments->print_config) {
+      print_warnings(arguments->job.warnings);
       print_result(job_as_toml(arguments->job));
       return static_cast<int>(exit_done);
     }

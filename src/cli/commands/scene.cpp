@@ -274,7 +274,7 @@ Command add_scene_command(CLI::App& app, const Invocation& /*invocation*/) {
     reading.push_back(job_schema().find(name));
   }
   bind_options(app, reading, [arguments](const Option& option, const std::vector<std::string>& values) {
-    set_option(arguments->job, option.name, values, {Origin::given, "the command line", {}});
+    set_option(arguments->job, option.name, values, {Origin::given, "the command line", {}, {}});
   });
   app.add_flag("--bvh", arguments->bvh, "Builds the ray tracing tree, too: its memory and time, and peak memory");
   app.add_option("--threads", arguments->threads, "0: as many as the machine has")

@@ -20,7 +20,8 @@ void add_farm_options(JobSchema& schema) {
   schema
       .value("--stage", &JobSettings::stage, choices<SequenceStage>(), Touch::frames,
              "For frames that depend on those before them: trace only traces frames, on any number of machines, and "
-             "writes what was found beside the outputs (traced.0001.sparse); finish makes the pictures of such files, "
+             "writes what was found beside the outputs (NAME.traced.0001.sparse); finish makes the pictures of such "
+             "files, "
              "in order, to the bit those of a single run")
       .decides_nothing()
       .with(Trait::one_run);

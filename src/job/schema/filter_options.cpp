@@ -1,8 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/registry_names.hpp"
+#include <algorithm>
+#include <vector>
+
+#include "gazetrace/density.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/reconstruct.hpp"
 #include "job/schema/parts.hpp"
 
 namespace gazetrace {
+namespace {
+
+template <class Infos>
+std::vector<std::string> names_of_all(const Infos& infos) {
+  std::vector<std::string> names;
+  names.reserve(infos.size());
+  for (const auto& info : infos) {
+    names.push_back(info.name);
+  }
+  return names;
+}
+
+bool has_name(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+void check_filter_name(const std::string& name, const std::string& place) {
+  const std::vector<std::string> known = names_of_all(reconstruction_filters());
+  if (name == "oidn" && denoiser_library().path.empty()) {
+    throw Error(ErrorKind::usage, place, "Open Image Denoise was not found",
+                "run cmake/denoiser.sh with the build folder, or name the library in GAZETRACE_OIDN_LIBRARY");
+  }
+  if (name == "auto" || has_name(known, name)) {
+    return;
+  }
+  throw Error(ErrorKind::usage, place, unknown_name_message("filter", name, known),
+              has_name(names_of_all(densities()), name) ? "a density has this name: give `density`" : "");
+}
 
 void add_filter_options(JobSchema& schema) {
   schema.group("Between the samples");

@@ -107,7 +107,6 @@ std::string names_of_samplings() {
   return names;
 }
 
-// A density comes first, so that of both on one command line the sampling decides.
 void add_sampling_choice(JobSchema& schema) {
   OptionOf<JobSettings>& density =
       schema
@@ -169,7 +168,7 @@ void add_region_options(JobSchema& schema) {
           .value("--region-eccentricities", of_regions(&R::eccentricities_deg), "DEG,DEG", Touch::sampling,
                  "Eccentricities at which the fovea and the intermediate region end, in degrees from the gaze outwards")
           .with(Trait::always_stated)
-          .idle_when({without_gaze()}),
+          .idle_when({without_gaze(), without_regions()}),
       found_type([](auto& settings) -> auto& { return regions_in(settings).eccentricities_deg; }));
 }
 

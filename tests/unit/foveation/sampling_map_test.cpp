@@ -276,6 +276,17 @@ std::string refusal(const FoveationSettings& settings) {
   return "";
 }
 
+TEST(CheckFoveation, ADensityHasAValueForEachParameterOrNone) {
+  DensitySampling density;
+  density.model = "mar";  // slope, foveal, relative-to
+  for (const std::vector<double>& values : {std::vector<double>{0.03}, {0.03, 0.02}, {0.03, 0.02, 0, 0}}) {
+    density.values = values;
+    FoveationSettings settings;
+    settings.sampling = density;
+    EXPECT_THAT(refusal(settings), testing::HasSubstr("`density`: mar has 3 parameters, and"));
+  }
+}
+
 TEST(CheckFoveation, NamesTheFieldAndWhatIsAllowed) {
   using testing::HasSubstr;
   EXPECT_EQ(refusal({}), "");

@@ -29,7 +29,7 @@ std::vector<FormerOption> two_modes() {
 }
 
 CurrentOptions now(const std::string& option, const std::string& value) {
-  return current_options(option, {value}, ErrorKind::usage, "here", two_modes());
+  return current_options({option, {value}}, {{option, {value}}}, ErrorKind::usage, "here", two_modes());
 }
 
 std::string refusal(const std::string& option, const std::string& value) {
@@ -73,13 +73,38 @@ TEST(FormerOptions, WhatIsGoneIsRefusedWithWhatToUseInstead) {
   EXPECT_EQ(refusal("rays", "5"), "here: there is no such option; the number of samples a pixel is `spp`");
 }
 
+TEST(FormerOptions, ARowMayAskForAnotherOptionBesideIt) {
+  const std::vector<FormerOption> table{
+      former_option(FormerKind::renamed, "--model *", "--curve *", "it is one"),
+      former_option(FormerKind::renamed, "--slope * --model line|arc", "--curve :slope=*", "it is said with it"),
+      former_option(FormerKind::renamed, "--slope * --model *", "", "this one has none"),
+      former_option(FormerKind::gone, "--slope", "", "give it with its `curve`"),
+      former_option(FormerKind::renamed, "--ends * --model line", "--curve :from=*,to=*", "it is said with it")};
+  const auto settings_of = [&](const std::vector<OptionText>& given) {
+    std::vector<OptionText> settings;
+    for (const OptionText& one : given) {
+      for (const OptionText& now : current_options(one, given, ErrorKind::usage, "here", table).settings) {
+        settings.push_back(now);
+      }
+    }
+    return settings;
+  };
+  const OptionText slope{"slope", {"0.5"}};
+  const OptionText ends{"ends", {"2,8"}};
+  EXPECT_THAT(settings_of({slope, {"model", {"arc"}}}), ElementsAre(Pair("curve", ElementsAre("arc:slope=0.5"))));
+  EXPECT_THAT(settings_of({{"model", {"line"}}, ends, slope}),
+              ElementsAre(Pair("curve", ElementsAre("line:from=2,to=8,slope=0.5"))));
+  EXPECT_THAT(settings_of({{"model", {"box"}}, slope}), ElementsAre(Pair("curve", ElementsAre("box"))));
+  EXPECT_THROW(settings_of({slope}), Error);
+}
+
 // Each row of the table of this version, held against the options of this version.
 TEST(FormerOptions, TheTableFitsTheOptions) {
   std::set<std::string> rows;
   for (const FormerOption& former : former_options()) {
     const std::string row = former.option + " " + former.value;
     SCOPED_TRACE(row);
-    EXPECT_TRUE(rows.insert(row).second) << "there are two rows";
+    EXPECT_TRUE(rows.insert(row + " " + former.beside + " " + former.beside_values).second) << "there are two rows";
     EXPECT_FALSE(former.reason.empty());
     EXPECT_FALSE(former.reason.ends_with('.'));
     EXPECT_TRUE(!former.value.empty() || job_schema().find(former.option) == nullptr) << "it is an option still";
@@ -87,7 +112,7 @@ TEST(FormerOptions, TheTableFitsTheOptions) {
     for (const auto& [name, value] : former.replacements) {
       const OptionOf<JobSettings>* option = job_schema().find(name);
       ASSERT_NE(option, nullptr) << "there is no option " << name;
-      if (!value.empty() && !value.starts_with('*')) {
+      if (!value.empty() && value.find('*') == std::string::npos && !value.starts_with(':')) {
         EXPECT_NO_THROW(option->check({value}, name)) << value;
       }
     }
@@ -110,6 +135,26 @@ TEST(FormerOptions, AJobAndItsFileAreToldOfThem) {
               HasSubstr("`samples`: there is no such option; the number of samples a pixel is `spp`"));
   EXPECT_THAT(error_of([] { job_from_toml("\nsamples = 5\n", "job.toml"); }),
               HasSubstr("job.toml:2: samples: there is no such option; the number of samples a pixel is `spp`"));
+}
+
+// Records state every option of the version that wrote them.
+TEST(FormerOptions, TheRecordOfAnEarlierVersionIsUnderstood) {
+  RunRecord record;
+  record.config_toml =
+      "angle-reading = \"eccentricity\"\nbudget-spp = 2\nfalloff = \"mar\"\nfalloff-eye = \"both\"\n"
+      "falloff-mar-slope = 0.03\nfalloff-ramp = [5, 25, 0.1]\nregion-angles = [4, 10]\nregion-shape = \"cone\"\n"
+      "sample-unit = \"pixel\"\nspp = 32\n";
+  const Job job = job_of_record(record, "run.json");
+  EXPECT_EQ(option_text(job, "sampling"), "density");
+  EXPECT_EQ(option_text(job, "density"), "mar:slope=0.03");
+  EXPECT_EQ(option_text(job, "region-eccentricities"), "4,10");
+  EXPECT_EQ(option_text(job, "spp"), "2");
+}
+
+TEST(FormerOptions, TheRecordOfAFinishedRunNeedsNoFilesThatAreGone) {
+  RunRecord record;
+  record.config_toml = "spp = 4\ndensity = \"gone.csv\"\n";
+  EXPECT_EQ(option_text(job_of_record(record, "run.json"), "spp"), "4");
 }
 
 }  // namespace

@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <limits>
+#include <set>
 
 #include "gazetrace/job.hpp"
 #include "gazetrace/resolve.hpp"
+#include "job/quality_defaults.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace gazetrace {
@@ -17,7 +20,7 @@ using testing::HasSubstr;
 constexpr const char* kCommandLine = "the command line";
 
 void on_command_line(Job& job, const std::string& option, const std::string& value) {
-  set_option(job, option, {value}, {Origin::given, kCommandLine, {}});
+  set_option(job, option, {value}, {Origin::given, kCommandLine, {}, {}});
 }
 
 std::string error_of(const std::function<void()>& call) {
@@ -121,6 +124,75 @@ TEST(Job, OrderOfPrecedence) {
                                        "preset reference from the command line replaces filter = linear of job.toml:3",
                                        "the command line replaces preset = paper of job.toml:1"}));
   }
+}
+
+TEST(Job, WhatIsGivenTogetherSaysEachThingOnce) {
+  const auto together = [](const std::vector<std::pair<std::string, std::string>>& options) {
+    std::vector<GivenOption> given;
+    for (const auto& [name, value] : options) {
+      given.push_back({name, {value}, {}, {}});
+    }
+    return error_of([&] {
+      Job job;
+      set_options(job, given);
+    });
+  };
+  EXPECT_EQ(together({{"sampling", "uniform"}, {"density", "mar"}}),
+            "`sampling` uniform and `density`, which makes `sampling` density, contradict each other: which of them "
+            "holds?");
+  EXPECT_THAT(together({{"density", "mar"}, {"sampling", "regions"}}), HasSubstr("contradict each other"));
+  EXPECT_THAT(together({{"spp", "3"}, {"budget-spp", "2"}}), HasSubstr("`budget-spp`, which makes `spp` 2,"));
+  EXPECT_EQ(together({{"density", "mar"}, {"sampling", "density"}, {"spp", "2"}, {"spp", "3"}}), "");
+  Job job;  // one after the other, the later holds
+  set_option(job, "sampling", "uniform");
+  set_option(job, "density", "mar");
+  EXPECT_EQ(option_text(job, "sampling"), "density");
+}
+
+TEST(Job, AReplacedDensityIsNamedInItsDecision) {
+  Job job;
+  on_command_line(job, "density", "csf");
+  add_toml(job, "density = \"mar\"\n", "job.toml");
+  EXPECT_THAT(decisions_of(job), testing::ElementsAre("the command line replaces density = mar of job.toml:1"));
+}
+
+TEST(Job, AStatedQualityKeepsWhatIsSaidOfOtherSamplings) {
+  Job job;
+  set_option(job, "region-samples", "5,4,3");
+  set_option(job, "target-relmse", "0.01");
+  const Job chosen = with_quality_defaults(job);
+  EXPECT_EQ(option_text(chosen, "sampling"), "adaptive");
+  EXPECT_EQ(option_text(chosen, "region-samples"), "5,4,3");
+}
+
+// A program may set what no option says.
+TEST(Job, DifferentDensitiesOfAProgramHaveDifferentDigests) {
+  JobSettings plain;
+  DensitySampling density;
+  plain.foveation.sampling = density;
+  JobSettings sparse = plain;
+  std::get<DensitySampling>(sparse.foveation.sampling).least_density = 0.5;
+  JobSettings full = plain;
+  std::get<DensitySampling>(full.foveation.sampling).full_rate_spp = 64;
+  density.model.clear();
+  density.curve.points = {{0, 1}, {20, 0.1}};
+  JobSettings curve = plain;
+  curve.foveation.sampling = density;
+  JobSettings other = curve;
+  std::get<DensitySampling>(other.foveation.sampling).curve.points[1].y = 0.2;
+  std::set<std::string> digests;
+  for (const JobSettings& settings : {plain, sparse, full, curve, other}) {
+    digests.insert(digest_job(settings, {}));
+  }
+  EXPECT_EQ(digests.size(), 5U);
+}
+
+TEST(Job, AFolderWithTheNameOfAModelIsNoDensity) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "mar");
+  Job job;
+  add_toml(job, "density = \"mar\"\n", folder / "job.toml");
+  EXPECT_EQ(option_text(job, "density"), "mar");
 }
 
 TEST(Job, AFileIsAboveItsPreset) {
