@@ -16,6 +16,7 @@
 #include "gazetrace/former_options.hpp"
 #include "job/confine.hpp"
 #include "job/preset_by_name.hpp"
+#include "job/toml_values.hpp"
 
 namespace gazetrace {
 namespace {
@@ -151,7 +152,10 @@ void set_options(Job& job, const std::vector<GivenOption>& given, const JobSchem
     }
     for (const auto& [option, values] : current.settings) {
       now.push_back({option, values, one.source, one.place});
-      now.back().source.former = current.notice.empty() ? one.source.former : one.option;
+      if (!current.notice.empty()) {  // values that were given without knowing what takes them
+        now.back().source.former = one.option;
+        now.back().values = values_for(option_named(schema, option), values);
+      }
     }
   }
   check_agreement(now, schema);

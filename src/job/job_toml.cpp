@@ -80,13 +80,6 @@ std::string toml_value(const Option& option, const std::vector<std::string>& val
   return text + "]";
 }
 
-// Values of a former option, which were read without knowing what takes its place.
-std::vector<std::string> values_for(const Option& option, const std::vector<std::string>& values) {
-  return option.shape == OptionShape::repeated || values.size() < 2
-             ? values
-             : std::vector{fmt::format("{}", fmt::join(values, ","))};
-}
-
 std::string wrapped_comment(const std::string& text) {
   constexpr std::size_t kColumns = 100;
   std::string result;
@@ -139,6 +132,12 @@ std::vector<OptionText> given_in(const TomlNode& table, const std::string& path)
     }
   }
   return given;
+}
+
+std::vector<std::string> values_for(const Option& option, const std::vector<std::string>& values) {
+  return option.shape == OptionShape::repeated || values.size() < 2
+             ? values
+             : std::vector{fmt::format("{}", fmt::join(values, ","))};
 }
 
 std::vector<TomlSetting> toml_settings(const std::string& key, const TomlNode& node,

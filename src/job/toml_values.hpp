@@ -24,6 +24,8 @@ std::vector<TomlSetting> toml_settings(const std::string& key, const TomlNode& n
                                        const std::string& path, const std::string& remedy,
                                        PathsBegin paths = PathsBegin::beside_settings,
                                        TomlChecks checks = TomlChecks::values);
+// Values of a former option, which were read without knowing what takes its place.
+std::vector<std::string> values_for(const Option& option, const std::vector<std::string>& values);
 // Keys and values of a table, apart from tables in it.
 std::vector<OptionText> given_in(const TomlNode& table, const std::string& path);
 
