@@ -50,11 +50,11 @@ def _shown(results, place):
     return [row for row in results.rows if row.place == place and row.role != "wrong-gaze"]
 
 
-def _legend(axes, rows, lines=False):
+def _legend(axes, rows, below=0.19, lines=False):
     """The roles that are there, below the axes."""
     roles = [ROLES[name] for name in ROLES if any(row.role == name for row in rows)]
     handles = [Line2D([], [], color=role.color, marker=role.marker, linestyle=_line(role) if lines else "none", label=role.words) for role in roles]
-    axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(-0.1, -0.19 if not lines else -0.36), ncol=1 if len(roles) < 3 else 2, handlelength=2 if lines else 1, fontsize=7.5,
+    axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(-0.1, -below), ncol=1 if len(roles) < 3 else 2, handlelength=2 if lines else 1, fontsize=7.5,
                 columnspacing=0.8, borderaxespad=0)
 
 
@@ -168,7 +168,7 @@ def _bands(results, test, metric, with_pdf):
         axes.grid(False, axis="x")
         axes.set_xlabel("eccentricity [deg]; region")
         axes.set_ylabel(f"{metric.words}, {metric.better}")
-        _legend(axes, rows)
+        _legend(axes, rows, 0.22 if len(parts) < 8 else 0.31)
         numbers = [{"id": row.id, "role": row.role, "label": row.label, "part": part, metric.name: score.mean, "low": score.low, "high": score.high,
                     "resolved": int(score.resolved)} for row in rows for part in parts if (score := row.score(metric.name, part))]
         return _finish(fig, "bands", test.place, metric, test.id, title, numbers, with_pdf)
@@ -198,7 +198,7 @@ def _over_time(results, test, metric, with_pdf):
             axes.set_ylabel(label)
         below.set_xlabel("video time [s]")
         _strip(below, test.frames)
-        _legend(below, rows, True)
+        _legend(below, rows, 0.36, True)
         return _finish(fig, "time", test.place, metric, test.id, title, numbers, with_pdf)
 
 

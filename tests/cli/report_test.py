@@ -186,6 +186,22 @@ class Report(reports.ReportTest):
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
         self.assertIn("apt-get install python3-matplotlib python3-jinja2 python3-pandas", done.stderr)
 
+    def test_the_demo_finishes_without_the_page(self):
+        (self.folder / "data").mkdir()
+        for name in ("scenes", "gazelogs"):
+            (self.folder / "data" / name).symlink_to(harness.SOURCE / name)
+        self.write("data/examples/example.toml", (harness.SOURCE / "examples/example.toml").read_text())
+        self.write("data/examples/demo.toml", '[common]\nsize = "32x18"\nfps = "10"\nframes = "8"\n[[scene]]\nname = "yard"\npath = "../scenes/courtyard/courtyard.gltf"\n'
+                   'camera = "walk"\n[[gaze]]\nname = "reader"\nlog = "../gazelogs/tx300_left.csv"\n[grid]\nregion-samples = [[4, 2, 1]]\n[reference]\nspp = 4\n'
+                   '[measure]\nrepeats = 2\nreference-rate = 4\nmetrics = ["mse"]\nbaselines = ["none"]\ncontrols = false\n')
+        self.write("bin/python3", '#!/bin/sh\nexec /usr/bin/python3 -S "$@"\n').chmod(0o755)  # its own library alone
+        variables = {"PATH": f"{self.folder}/bin:/usr/bin:/bin", "GAZETRACE_REPORT_TRIED": "1"}
+        for name, environment, has_page in (("with", {}, True), ("without", variables, False)):
+            done = self.run_ok("demo", name, "--data", "data", "--frames", "1", "--size", "32x18", environment=environment, alone=True)
+            self.assertEqual("report.html" in done.stdout, has_page, done.stdout)
+            self.assertEqual((self.folder / name / "report.html").exists(), has_page)
+            self.assertEqual("apt-get install python3-matplotlib" in done.stderr, not has_page)
+
     def test_a_program_on_the_path_is_a_command(self):
         script = self.write("bin/gazetrace-hello-there", '#!/bin/sh\necho "hello $*"\nexit 7\n')
         script.chmod(0o755)
