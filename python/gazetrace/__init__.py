@@ -25,6 +25,7 @@ if int(_numpy.__version__.split(".")[0]) >= 2 and not _core.knows_numpy_2:
 
 from . import metrics
 from ._errors import Error, GazetraceWarning
+from ._table import Events, Table
 from .comparison import ComparisonResult, compare
 from .gaze import GazeLog, read_gaze
 from .job import Job, Scene, options, write_density
@@ -35,6 +36,7 @@ __version__ = _core.version
 __all__ = [
     "ComparisonResult",
     "Error",
+    "Events",
     "Frame",
     "Gaze",
     "GazeLog",
@@ -44,6 +46,7 @@ __all__ = [
     "Rendering",
     "SamplingMap",
     "Scene",
+    "Table",
     "compare",
     "metrics",
     "options",

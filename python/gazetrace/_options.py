@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values of options as the text that the library's schemas read. Nothing here knows a single option."""
 
+import datetime
 import numbers
 import os
 
@@ -24,8 +25,19 @@ def one_text(value):
     raise TypeError(f"{value!r} is neither text, a number, a path, nor True or False")
 
 
+def duration_text(value):
+    """Seconds, or a timedelta, as the schemas read durations; texts such as "50ms" stay."""
+    if isinstance(value, datetime.timedelta):
+        return f"{value // datetime.timedelta(microseconds=1)}us"
+    if isinstance(value, numbers.Real) and not isinstance(value, bool):
+        return f"{float(value):.9f}".rstrip("0").rstrip(".") + "s"
+    return value
+
+
 def texts_of(option, value):
     """The texts of a value; `option` is None for an option that the schema does not know, and will say so."""
+    if option is not None and option["unit"] == "DURATION":
+        value = duration_text(value)
     if isinstance(value, (bool, str, os.PathLike, numbers.Real)):
         return [one_text(value)]
     parts = [one_text(part) for part in value]

@@ -13,6 +13,7 @@ from . import _core
 from ._errors import Error, GazetraceWarning
 from ._exr import write_gray_exr
 from ._options import by_name, texts_of
+from .gaze import write_log
 from .plan import Plan
 from .rendering import Rendering
 
@@ -35,15 +36,19 @@ class Job:
 
     `density` may be an array, too, which says where the samples of a frame go, in samples a pixel, or as relative rates
     where `spp` is given: of the shape (height, width), of any size, or a dictionary of such arrays by the numbers of
-    frames. It is written to a temporary file.
+    frames.
+
+    `gaze` may be a `GazeLog`, too, an array whose columns are time in seconds, u and v, or a table with the columns t_s
+    (or t_ns), u, v and, where there is one, valid. Places are fractions of the screen, and NaN where there is no gaze.
+    Both are written to temporary files. Durations are seconds, a timedelta, or text such as "50ms".
     """
 
-    def __init__(self, path=None, /, *, density=None, **options):
+    def __init__(self, path=None, /, *, density=None, gaze=None, **options):
         self._core = _core.Job()
-        self._density_folder = None
+        self._folders = []
         if path is not None:
             self._core.add_file(os.fspath(path))
-        self._set(options, density)
+        self._set(options, density, gaze)
 
     @classmethod
     def from_toml(cls, text, path="settings"):
@@ -52,35 +57,45 @@ class Job:
         job._core.add_toml(text, path)
         return job
 
-    def replace(self, *, density=None, **options):
+    def replace(self, *, density=None, gaze=None, **options):
         """Another job, with these options on top."""
         other = Job()
         other._core = _core.Job(self._core)
-        other._density_folder = self._density_folder
-        other._set(options, density)
+        other._folders = list(self._folders)
+        other._set(options, density, gaze)
         return other
 
-    def _set(self, options, density):
+    def _set(self, options, density, gaze):
         if "density_map" in options and not isinstance(options["density_map"], (str, os.PathLike, type(None))):
             raise Error("`density_map` is now `density`, which takes names, files and arrays")
         given = [(name, texts_of(_OPTIONS.get(name), value)) for name, value in options.items() if value is not None]
         if density is not None:
             given.append(("density", [self._density_text(density)]))
+        if gaze is not None:
+            given.append(("gaze", [self._gaze_text(gaze)]))
         self._core.set(given)
+
+    def _new_folder(self):
+        self._folders.append(_TemporaryFolder())
+        return self._folders[-1].path
+
+    def _gaze_text(self, gaze):
+        if isinstance(gaze, (str, os.PathLike)):
+            return os.fspath(gaze)
+        path = self._new_folder() / "gaze.csv"
+        write_log(gaze, path)
+        return os.fspath(path)
 
     def _density_text(self, density):
         if isinstance(density, (str, os.PathLike)):
             return os.fspath(density)
-        folder = _TemporaryFolder()
+        folder = self._new_folder()
         if isinstance(density, dict):
             for frame, array in density.items():
-                write_gray_exr(folder.path / f"density.{int(frame):04d}.exr", array)
-            name = "density.####.exr"
-        else:
-            write_gray_exr(folder.path / "density.exr", density)
-            name = "density.exr"
-        self._density_folder = folder
-        return os.fspath(folder.path / name)
+                write_gray_exr(folder / f"density.{int(frame):04d}.exr", array)
+            return os.fspath(folder / "density.####.exr")
+        write_gray_exr(folder / "density.exr", density)
+        return os.fspath(folder / "density.exr")
 
     def __getitem__(self, name):
         """The value of an option as text; of one that may be given several times, a list; None where it is not set."""
@@ -116,7 +131,7 @@ class Job:
         of the program are written as well, with its checks, and NAME.timing.csv and NAME.run.json beside them; without,
         nothing is written.
         """
-        rendering = Rendering(_core.Rendering(self._core, scene), keep=self._density_folder)
+        rendering = Rendering(_core.Rendering(self._core, scene), keep=self._folders)
         _warn(rendering.warnings)
         return rendering
 
@@ -139,8 +154,9 @@ class _TemporaryFolder:
 
 
 def _warn(texts):
-    for text in texts:
-        warnings.warn(text, GazetraceWarning, stacklevel=3)
+    """One warning of all that is to be said."""
+    if texts:
+        warnings.warn("\n".join(texts), GazetraceWarning, stacklevel=3)
 
 
 def write_density(path, array):

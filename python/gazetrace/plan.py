@@ -6,6 +6,7 @@ import json
 import numpy as np
 
 from ._columns import columns_of, flattened, frame_of
+from ._table import as_html
 from .rendering import SamplingMap
 
 
@@ -33,8 +34,24 @@ class Plan:
     def __len__(self):
         return len(self._rows)
 
-    def __getitem__(self, name):
-        return self.columns[name]
+    def __getitem__(self, key):
+        """A column by its name, or the plan of a slice of its frames."""
+        if isinstance(key, str):
+            return self.columns[key]
+        part = object.__new__(Plan)
+        part._core, part._rows = self._core, list(np.array(self._rows, dtype=int)[key])
+        part.columns = {name: values[key] for name, values in self.columns.items()}
+        part._samples = None if self._samples is None else self._samples[key]
+        return part
+
+    def __repr__(self):
+        if not len(self):
+            return "<Plan of no frame>"
+        return f"<Plan of {len(self)} frames: {self.frame[0]} to {self.frame[-1]}, {100 * self.valid.mean():.3g} % with gaze>"
+
+    def _repr_html_(self):
+        names = ("frame", "t_s", "u", "v", "valid")
+        return as_html({name: getattr(self, name) for name in names}, repr(self)[1:-1])
 
     @property
     def frame(self):

@@ -2,12 +2,17 @@
 """Rendering, frame by frame."""
 
 import json
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from . import _core
 from ._columns import columns_of, frame_of
+from ._errors import Error
+from ._exr import write_exr
+from ._png import png_of
+from ._table import as_html
 
 
 class Gaze(NamedTuple):
@@ -72,6 +77,12 @@ class SamplingMap:
         """One entry for each site: its block, samples, pixels and region, as arrays by name."""
         return self._core.sites()
 
+    def __repr__(self):
+        return f"<SamplingMap {self._core.width}x{self._core.height}: {self.samples} samples in {len(self.regions)} regions>"
+
+    def _repr_html_(self):
+        return as_html(columns_of(self.regions), repr(self)[1:-1])
+
 
 class Frame:
     """A rendered frame. Its arrays are the memory of the renderer, which lives as long as one of them does."""
@@ -135,6 +146,11 @@ class Frame:
         return self._core.squared_error
 
     @property
+    def eccentricity(self):
+        """How far each pixel is from the gaze, in degrees."""
+        return self._core.eccentricity()
+
+    @property
     def aovs(self):
         """The further channels that there are, by the names of the option `aov`, which asks for first hits."""
         arrays = {
@@ -143,7 +159,7 @@ class Frame:
             "depth": self._core.depth,
             "samples": self._core.samples,
             "variance": self._core.variance,
-            "eccentricity": self._core.eccentricity(),
+            "eccentricity": self.eccentricity,
         }
         arrays.update({name: self._core.layer(name) for name in _core.aov_names() if name not in arrays})
         return {name: array for name, array in arrays.items() if array is not None}
@@ -168,6 +184,21 @@ class Frame:
     def display(self, bits=8):
         """The picture as a display shows it, through the job's view: (height, width, 3) with 8 or 16 bits."""
         return self._core.display(bits)
+
+    def save(self, path, bits=8):
+        """Writes the frame: .png as a display shows it, with 8 or 16 bits; .exr or .npy its radiance."""
+        path = Path(path)
+        if path.suffix == ".png":
+            path.write_bytes(png_of(self.display(bits)))
+        elif path.suffix == ".exr":
+            write_exr(path, {name: self.radiance[..., c] for c, name in enumerate("RGB")})
+        elif path.suffix == ".npy":
+            np.save(path, self.radiance)
+        else:
+            raise Error(f"{path}: a frame is saved as .png, .exr or .npy")
+
+    def _repr_png_(self):
+        return png_of(self.display(8))
 
     def __array__(self, dtype=None, copy=None):
         radiance = self.radiance

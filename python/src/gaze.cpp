@@ -4,14 +4,19 @@
 #include <pybind11/stl.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "arrays.hpp"
 #include "bind.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/gaze_events.hpp"
 #include "gazetrace/gaze_log.hpp"
 #include "gazetrace/gaze_read.hpp"
+#include "gazetrace/gaze_trials.hpp"
+#include "gazetrace/gaze_write.hpp"
 #include "gazetrace/job_schema.hpp"
 #include "gazetrace/resolve.hpp"
 #include "options.hpp"
@@ -93,6 +98,34 @@ py::list facts(const GazeLog& log) {
   return list;
 }
 
+// By the name of a preset, "auto", or "log" for those that the log states.
+std::string detected_events(const GazeLog& log, const std::string& method, const std::string& device_name) {
+  std::optional<GazeDevice> device;
+  for (const GazeDevice one : {GazeDevice::desktop, GazeDevice::head_mounted}) {
+    device = to_string(one) == device_name ? std::optional(one) : device;
+  }
+  if (!device_name.empty() && !device) {
+    throw Error(ErrorKind::usage, "`device`", "is 'desktop' or 'head-mounted', not '" + device_name + "'");
+  }
+  const auto found = [&] {
+    if (method == "log") {
+      return events_of_log(log);
+    }
+    return detect_events(log, method == "auto" ? default_event_preset(log, device) : event_preset(method), device);
+  };
+  return events_as_json(found(), log);
+}
+
+// Samples from one to the one before another, with what the log says of their time.
+LogPtr part_of(const GazeLog& log, std::size_t begin, std::size_t end) {
+  GazeTrial part;
+  part.begin_ns = log.samples.at(begin).t_ns;
+  part.end_ns = log.samples.at(end - 1).t_ns;
+  auto cut = std::make_shared<GazeLog>(cut_to_trial(log, part));
+  cut->trial = log.trial;
+  return cut;
+}
+
 }  // namespace
 
 void bind_gaze(py::module_& module) {
@@ -122,6 +155,9 @@ void bind_gaze(py::module_& module) {
           "eye",
           [](const GazeLog& log) { return names(log, [](const GazeSample& sample) { return to_string(sample.eye); }); })
       .def("events", &events)
+      .def("detected_events", &detected_events, py::call_guard<py::gil_scoped_release>())
+      .def("part", &part_of, py::call_guard<py::gil_scoped_release>())
+      .def("write", [](const GazeLog& log, const std::string& path) { write_gaze_csv(log, path); })
       .def("facts", &facts);
 }
 

@@ -31,8 +31,8 @@ def option_types():
         for option in options:
             if name == "MeasureOptions" and option["name"] in ARGUMENTS:
                 continue
-            if name == "JobOptions" and option["name"] == "density":
-                continue  # one that takes arrays, too
+            if name == "JobOptions" and option["name"] in ("density", "gaze"):
+                continue  # those that take arrays, too
             kind = TYPES[option["shape"]]
             if option["unit"] == "WxH":
                 kind = "str | Sequence[int]"

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a perception scientist writes: events of a log, logs and arrays as the gaze of a job, pieces, pictures, durations."""
+
+import datetime
+import importlib.util
+import json
+import math
+import os
+import runpy
+import struct
+import unittest
+import warnings
+import zlib
+
+import numpy as np
+
+import gazetrace
+from support import COURTYARD, GAZE_LOG, ROOT, SCENE, TestCase, needs_program, run_program
+
+SMALL = {"scene": COURTYARD, "camera": "walk", "size": (32, 18), "fps": 10, "region_samples": (1, 1, 1), "screen": "paper"}
+
+
+def pixels_of(png):
+    """Of a PNG without filters: 8 or 16 bits a channel."""
+    at, chunks = 8, {}
+    while at < len(png):
+        length, kind = struct.unpack(">I4s", png[at:at + 8])
+        chunks[kind] = png[at + 8:at + 8 + length]
+        assert zlib.crc32(kind + chunks[kind]) == struct.unpack(">I", png[at + 8 + length:at + 12 + length])[0]
+        at += length + 12
+    width, height, bits, color = struct.unpack(">IIBB", chunks[b"IHDR"][:10])
+    assert color == 2
+    lines = np.frombuffer(zlib.decompress(chunks[b"IDAT"]), np.uint8).reshape(height, -1)
+    assert not lines[:, 0].any()
+    return lines[:, 1:].copy().view(f">u{bits // 8}").reshape(height, width, 3)
+
+
+class EventsTest(TestCase):
+    @needs_program
+    def test_events_are_those_of_the_program(self):
+        for method in ("auto", "idt"):
+            found = gazetrace.read_gaze(GAZE_LOG).detect_events(method)
+            run = run_program("gaze", "events", GAZE_LOG, "--method", method, "--json")
+            expected = json.loads(run.stdout)["events"]
+            self.assertEqual(list(found.movement), [event["movement"] for event in expected])
+            np.testing.assert_array_equal(found.onset_ns, [event["onset_ns"] for event in expected])
+            np.testing.assert_allclose(found.duration_ms, [event["duration_ms"] for event in expected])
+
+    def test_events_are_a_table(self):
+        log = gazetrace.read_gaze(GAZE_LOG)
+        events = log.detect_events()
+        fixations = events.fixations
+        self.assertGreater(len(fixations), 3)
+        self.assertEqual(set(fixations.movement), {"fixation"})
+        self.assertEqual(len(fixations) + len(events.saccades) + len(events.blinks), sum(events.movement[:, None] == ["fixation", "saccade", "blink"]).sum())
+        self.assertAlmostEqual(fixations.onset_s[0], (fixations.onset_ns[0] - log.t_ns[0]) * 1e-9)
+        self.assertEqual(fixations[0]["duration_ms"], fixations["duration_ms"][0])
+        self.assertEqual(len(fixations[fixations.duration_ms > 1e9]), 0)
+        self.assertEqual([row["onset_ns"] for row in fixations[:2]], list(fixations.onset_ns[:2]))
+        self.assertRegex(repr(fixations), r"<Events of \d+ rows: movement, onset_s")
+        self.assertIn("<th>movement</th>", fixations._repr_html_())
+        self.assertSays("unknown", "usage", log.detect_events, "ivtt")
+        self.assertSays("desktop", "usage", log.detect_events, device="phone")
+
+    def test_texts_of_messages_are_hidden(self):
+        path = self.folder / "log.asc"
+        lines = ["MSG\t1000 DISPLAY_COORDS 0 0 1023 767", "START\t1000 \tLEFT\tSAMPLES\tEVENTS", "SAMPLES\tGAZE\tLEFT\tRATE\t250.00\tTRACKING\tCR", "MSG\t1004 Ada Lovelace"]
+        lines += [f"{1000 + 4 * i}\t 500.0\t 300.0\t 900.0\t..." for i in range(100)] + ["END\t1400 \tSAMPLES\tEVENTS\tRES\t  35.00\t  35.00"]
+        path.write_text("\n".join(lines) + "\n")
+        hidden, kept = gazetrace.read_gaze(path).events, gazetrace.read_gaze(path, keep_ids=True).events
+        self.assertNotIn("Ada Lovelace", "".join(hidden.text))
+        self.assertIn("Ada Lovelace", "".join(kept.text))
+        self.assertEqual(list(hidden.type), list(kept.type))
+
+
+class GazeOfAJobTest(TestCase):
+    def gaze_of_frames(self, gaze, **options):
+        plan = gazetrace.Job(gaze=gaze, frames=range(1, 5), **{**SMALL, **options}).plan()
+        return np.stack([plan.u, plan.v])
+
+    def test_a_log_is_the_file_it_was_read_from(self):
+        expected = self.gaze_of_frames(GAZE_LOG)
+        np.testing.assert_array_equal(self.gaze_of_frames(gazetrace.read_gaze(GAZE_LOG)), expected)
+        self.assertTrue(np.isfinite(expected).any())
+
+    def test_arrays_and_tables(self):
+        t = np.arange(100) * 0.005
+        u, v = 0.3 + 0.4 * t, 0.5 + 0.1 * t
+        # Frames of 10 Hz are seen in their middle; the gaze is a straight line.
+        middles = (np.arange(4) + 0.5) / 10
+        expected = np.stack([0.3 + 0.4 * middles, 0.5 + 0.1 * middles])
+        for gaze in (np.c_[t, u, v], {"t_s": t, "u": u, "v": v}, {"t_ns": (t * 1e9).astype(int), "u": u, "v": v}):
+            np.testing.assert_allclose(self.gaze_of_frames(gaze), expected, atol=2e-3)
+        self.assertSays("three columns", "usage", gazetrace.Job, gaze=np.zeros((4, 2)))
+        self.assertSays("columns t_s", "usage", gazetrace.Job, gaze={"u": u, "v": v})
+        job = gazetrace.Job(gaze=np.c_[t, u, v], frames=1, **SMALL).replace(frames=range(1, 3))
+        self.assertEqual(len(job.plan()), 2)
+
+    def test_durations(self):
+        job = gazetrace.Job(gaze_latency=0.05, gaze_start=datetime.timedelta(milliseconds=250))
+        other = gazetrace.Job(gaze_latency="50ms", gaze_start="250ms")
+        self.assertEqual((job["gaze_latency"], job["gaze_start"]), (other["gaze_latency"], other["gaze_start"]))
+
+    def test_names_are_checked_when_they_are_given(self):
+        self.assertSays("did you mean 'guided'", "usage", gazetrace.Job, filter="gidued")
+
+    def test_one_warning_says_all(self):
+        job = gazetrace.Job(gaze=GAZE_LOG, gaze_latency="50ms", frames=range(1, 3), **SMALL)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            job.plan()
+        self.assertLessEqual(len(caught), 1)
+
+
+class PiecesTest(TestCase):
+    def test_slices(self):
+        log = gazetrace.read_gaze(GAZE_LOG)
+        part = log[100:200]
+        np.testing.assert_array_equal(part.t_ns, log.t_ns[100:200])
+        np.testing.assert_array_equal(part.u, log.u[100:200])
+        np.testing.assert_array_equal(log["u"], log.u)
+        self.assertEqual(len(log[-10:]), 10)
+        self.assertRaises(IndexError, lambda: log[5:5])
+        self.assertRaises(TypeError, lambda: log[::2])
+        plan = gazetrace.Job(gaze=GAZE_LOG, frames=range(1, 7), **SMALL).plan()
+        np.testing.assert_array_equal(plan[2:5].frame, [3, 4, 5])
+        np.testing.assert_array_equal(plan[2:5].samples, plan.samples[2:5])
+        self.assertEqual(plan[2:5].sampling_map(0).samples, plan.sampling_map(2).samples)
+
+    def test_what_a_notebook_shows(self):
+        log = gazetrace.read_gaze(GAZE_LOG)
+        self.assertRegex(repr(log), rf"<GazeLog saccades_blinks\.csv: {len(log)} samples of gaze on a screen in [0-9.]+ s, [0-9.]+ Hz, [0-9.]+ % usable>")
+        self.assertIn("<th>t_ns</th>", log._repr_html_())
+        plan = gazetrace.Job(gaze=GAZE_LOG, frames=range(1, 4), **SMALL).plan()
+        self.assertRegex(repr(plan), r"<Plan of 3 frames: 1 to 3, [0-9.]+ % with gaze>")
+        self.assertIn("<th>frame</th>", plan._repr_html_())
+        self.assertRegex(repr(plan.sampling_map(0)), r"<SamplingMap 32x18: \d+ samples in 3 regions>")
+        self.assertIn("<th>samples</th>", plan.sampling_map(0)._repr_html_())
+
+    def test_frames_are_saved(self):
+        frame = next(iter(gazetrace.Job(scene=SCENE, size=(32, 18), frames=1, sampling="uniform", spp=1, gaze_at=(0.5, 0.5), screen="paper").render()))
+        for bits in (8, 16):
+            frame.save(self.folder / "f.png", bits)
+            np.testing.assert_array_equal(pixels_of((self.folder / "f.png").read_bytes()), frame.display(bits))
+        np.testing.assert_array_equal(pixels_of(frame._repr_png_()), frame.display())
+        frame.save(self.folder / "f.npy")
+        np.testing.assert_array_equal(np.load(self.folder / "f.npy"), frame.radiance)
+        frame.save(self.folder / "f.exr")
+        frame.save(self.folder / "g.exr")
+        self.assertEqual(gazetrace.compare(frame, self.folder / "f.exr", metrics="mse", anyway=True)["mse"], 0)
+        self.assertSays(".png, .exr or .npy", "usage", frame.save, "f.gif")
+        self.assertEqual(frame.eccentricity.shape, (18, 32))
+        self.assertLess(frame.eccentricity[9, 16], frame.eccentricity[0, 0])
+
+    @unittest.skipUnless(importlib.util.find_spec("matplotlib"), "matplotlib is not installed")
+    def test_fifteen_lines(self):
+        path = ROOT / "examples/python/fifteen_lines.py"
+        lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
+        self.assertLessEqual(len(lines), 15)
+        import matplotlib
+        matplotlib.use("agg")
+        before = os.getcwd()
+        self.addCleanup(os.chdir, before)
+        os.chdir(ROOT)
+        small = self.folder / "small.py"
+        small.write_text(path.read_text(encoding="utf-8").replace("(320, 180)", "(64, 36)").replace("range(1, 7)", "range(1, 3)").replace(
+            '"fifteen_lines.svg"', repr(str(self.folder / "made.svg"))))
+        names = runpy.run_path(str(small))
+        self.assertEqual(len(names["frames"]), 2)
+        self.assertTrue(math.isfinite(names["error"]["flip"]))
+        self.assertIn("FLIP from uniform", (self.folder / "made.svg").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()
