@@ -204,7 +204,7 @@ def compare(
     reference: Pictures,
     test: Pictures,
     *,
-    metrics: Iterable[str] | None = None,
+    metrics: str | Iterable[str] | None = None,
     gaze: npt.ArrayLike | Path | None = None,
     fps: float | None = None,
     exposure: float | None = None,

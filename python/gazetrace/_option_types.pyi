@@ -49,7 +49,6 @@ class JobOptions(TypedDict, total=False):
     focus_distance: Value | None
     sensor_height: Value | None
     shutter: Value | None
-    gaze: Value | None
     gaze_format: Value | None
     gaze_recording: Value | None
     gaze_events: Value | None

@@ -186,7 +186,8 @@ def compare(
             seen = _core.view_of_screen(screen, *size) or one.view or other.view
             rate = fps or one.frames_per_second or other.frames_per_second or 0
             is_sequence = _is_sequence(reference) or _is_sequence(test)
-            chosen = list(metrics) if metrics is not None else _default_metrics(seen, gaze_px, is_sequence, rate)
+            names = metrics.split(",") if isinstance(metrics, str) else metrics
+            chosen = list(names) if names is not None else _default_metrics(seen, gaze_px, is_sequence, rate)
             color = one.color or other.color
             if display or view or color_options or color is None:
                 color = _core.color_pipeline(display, view, color_options)

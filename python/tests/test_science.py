@@ -8,6 +8,7 @@ import math
 import os
 import runpy
 import struct
+import sys
 import unittest
 import warnings
 import zlib
@@ -16,6 +17,9 @@ import numpy as np
 
 import gazetrace
 from support import COURTYARD, GAZE_LOG, ROOT, SCENE, TestCase, needs_program, run_program
+
+sys.path.append(str(ROOT / "tests/cli"))
+from exr_reader import Exr  # noqa: E402  a reader of the tests' own
 
 SMALL = {"scene": COURTYARD, "camera": "walk", "size": (32, 18), "fps": 10, "region_samples": (1, 1, 1), "screen": "paper"}
 
@@ -146,8 +150,9 @@ class PiecesTest(TestCase):
         frame.save(self.folder / "f.npy")
         np.testing.assert_array_equal(np.load(self.folder / "f.npy"), frame.radiance)
         frame.save(self.folder / "f.exr")
-        frame.save(self.folder / "g.exr")
-        self.assertEqual(gazetrace.compare(frame, self.folder / "f.exr", metrics="mse", anyway=True)["mse"], 0)
+        written = Exr(self.folder / "f.exr")
+        for c, name in enumerate("RGB"):
+            np.testing.assert_array_equal(np.array(written.channel(name)).reshape(18, 32), frame.radiance[..., c])
         self.assertSays(".png, .exr or .npy", "usage", frame.save, "f.gif")
         self.assertEqual(frame.eccentricity.shape, (18, 32))
         self.assertLess(frame.eccentricity[9, 16], frame.eccentricity[0, 0])
