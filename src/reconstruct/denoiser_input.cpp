@@ -54,12 +54,7 @@ Features seen_by_guides(const Guides& guides, std::size_t pixel) {
                                                 : Features{guides.albedo.pixels[pixel], guides.normal.pixels[pixel]};
 }
 
-bool has_blocks(const SamplingMap& map) {
-  return std::any_of(map.sites.begin(), map.sites.end(), [](const Site& site) { return site.pixels > 1; });
-}
-
-// Light for the pixels of larger sites and of those without samples: that of the surfaces around, smoothed as far as it
-// is noise. A network would take the noise of one coarse site over many pixels for a detail.
+// Light for sites without samples of their own: that of the surfaces around, smoothed as far as it is noise.
 class LightAround {
  public:
   explicit LightAround(const FilterInput& input) : input_(input) {
@@ -92,7 +87,7 @@ DenoiserInput denoiser_input(const SparseFrame& sparse, const SamplingMap& map, 
   const FilterInput input{sparse, values, map, &guides, threads};
   std::optional<LightAround> around;
   const bool has_empty = std::find(sparse.count.begin(), sparse.count.end(), 0U) != sparse.count.end();
-  if (has_blocks(map) || has_empty || !sparse.samples_of_others.empty()) {
+  if (has_empty || !sparse.samples_of_others.empty()) {
     around.emplace(input);
   }
   DenoiserInput out;
@@ -110,10 +105,10 @@ DenoiserInput denoiser_input(const SparseFrame& sparse, const SamplingMap& map, 
       const float rays = share * static_cast<float>(kDenoiserGuideRays);
       // Samples of a larger site are not those of its pixels, and only where the guides know nothing better than them.
       const float samples = site.pixels == 1 ? static_cast<float>(sparse.count[i]) : 1.0F - share;
+      const bool by_samples = sparse.count[i] > 0 && sparse.samples_of_others.empty();
+      Vec3f reflectance;
       for_each_pixel(map, site, [&](int x, int y) {
         const std::size_t p = out.radiance.index(x, y);
-        const bool by_samples = site.pixels == 1 && sparse.count[i] > 0 && sparse.samples_of_others.empty();
-        out.radiance.pixels[p] = by_samples ? values.value(i).radiance : around->radiance(x, y, i);
         const Features by_guides = seen_by_guides(guides, p);
         const float all = std::max(rays + samples, 1e-6F);
         const Vec3f albedo = (rays * by_guides.albedo + samples * own.albedo) / all;
@@ -121,6 +116,23 @@ DenoiserInput denoiser_input(const SparseFrame& sparse, const SamplingMap& map, 
                                 std::clamp(albedo.z, 0.0F, 1.0F)};
         out.normal.pixels[p] = (rays * by_guides.normal + samples * own.normal) / all;
         out.samples.pixels[p] = static_cast<float>(sparse.count[i]) / static_cast<float>(site.pixels);
+        reflectance += out.albedo.pixels[p] + Vec3f{kAlbedoOffset, kAlbedoOffset, kAlbedoOffset};
+      });
+      const Vec3f mean = values.value(i).radiance;
+      for_each_pixel(map, site, [&](int x, int y) {
+        const std::size_t p = out.radiance.index(x, y);
+        if (!by_samples) {
+          out.radiance.pixels[p] = around->radiance(x, y, i);
+        } else if (site.pixels == 1) {
+          out.radiance.pixels[p] = mean;
+        } else {
+          // One light for all of its pixels, by which their mean is that of the samples.
+          const Vec3f albedo = out.albedo.pixels[p];
+          const auto pixels = static_cast<float>(site.pixels);
+          out.radiance.pixels[p] = {pixels * mean.x * (albedo.x + kAlbedoOffset) / reflectance.x,
+                                    pixels * mean.y * (albedo.y + kAlbedoOffset) / reflectance.y,
+                                    pixels * mean.z * (albedo.z + kAlbedoOffset) / reflectance.z};
+        }
       });
       shifted += share < 0.5F ? static_cast<std::size_t>(site.pixels) : 0;
     }

@@ -26,8 +26,9 @@ inline constexpr int kDenoiserGuideRays = 4;
 // `sparse` holds surfaces and first hits (TraceSettings::surfaces), `guides` of the map's size
 // have kDenoiserGuideRays rays. Albedo and normal
 // are means over the rays of the guides and the samples of a site of one pixel; by the samples alone where these see
-// through lens and shutter what the pinhole of the guides sees elsewhere. Sites of several pixels give each of them the
-// light on the surface that it sees, times its own albedo, and what it sees shine.
+// through lens and shutter what the pinhole of the guides sees elsewhere. Sites of several pixels give each of them one
+// light, times its own albedo, so that their mean is that of the samples (denoiser_levels.hpp shows them to the network
+// block by block). Sites without samples show the light of the surfaces around.
 DenoiserInput denoiser_input(const SparseFrame& sparse, const SamplingMap& map, const Guides& guides, int threads);
 
 }  // namespace gazetrace

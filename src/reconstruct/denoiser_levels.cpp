@@ -134,12 +134,14 @@ ImageGray box_mean(const ImageGray& of, int radius, int threads) {
   };
   parallel_for(static_cast<std::size_t>(of.height_px), threads, [&](std::size_t row) {
     const int y = static_cast<int>(row);
-    mean_along(of.width_px, [&](int x) { return of(x, y); }, [&](int x, float mean) { rows(x, y) = mean; });
+    mean_along(
+        of.width_px, [&](int x) { return of(x, y); }, [&](int x, float mean) { rows(x, y) = mean; });
   });
   ImageGray means(of.width_px, of.height_px);
   parallel_for(static_cast<std::size_t>(of.width_px), threads, [&](std::size_t column) {
     const int x = static_cast<int>(column);
-    mean_along(of.height_px, [&](int y) { return rows(x, y); }, [&](int y, float mean) { means(x, y) = mean; });
+    mean_along(
+        of.height_px, [&](int y) { return rows(x, y); }, [&](int y, float mean) { means(x, y) = mean; });
   });
   return means;
 }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Intel Open Image Denoise, shown what it was trained on: radiance, albedo and normal of every pixel
-// (denoiser_input.hpp). The network runs once for a frame.
-#include <cstddef>
+// (denoiser_input.hpp), at the resolution of its samples (denoiser_levels.hpp). The network runs once for each size of
+// blocks.
+#include <utility>
+#include <vector>
 
 #include "reconstruct/denoiser_input.hpp"
+#include "reconstruct/denoiser_levels.hpp"
 #include "reconstruct/filter.hpp"
 #include "reconstruct/open_image_denoise.hpp"
 
@@ -15,7 +18,12 @@ const FilterDefinition filter_oidn{
       // AOVs and the variance of the samples are those of the linear filter.
       Frame frame = filter_linear.frame(input);
       DenoiserInput shown = denoiser_input(input.sparse, input.map, *input.guides, input.threads);
-      frame.radiance = open_image_denoise(shown, input.threads);
+      const std::vector<DenoiserLevel> levels = denoiser_levels(shown, input.map, input.threads);
+      std::vector<ImageRgb> pictures;
+      for (const DenoiserLevel& level : levels) {
+        pictures.push_back(open_image_denoise(level.input, input.threads));
+      }
+      frame.radiance = blend_levels(levels, pictures, input.map, input.threads);
       frame.sample_count = std::move(shown.samples);
       return frame;
     }};

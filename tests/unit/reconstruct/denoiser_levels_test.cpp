@@ -108,7 +108,8 @@ TEST(DenoiserLevels, FineLevelsShowBehindTheirBorderAndNeverBeyond) {
   EXPECT_EQ(frame(kMiddleX + 49, kMiddleY).x, 0);
   EXPECT_EQ(frame(kMiddleX + 25, kMiddleY).x, 1);
   EXPECT_EQ(frame(3, 3).x, 0);
-  // From the border inwards it fades in: never less than one pixel further out, and no step larger than the fade allows.
+  // From the border inwards it fades in: never less than one pixel further out, and no step larger than the fade
+  // allows.
   for (int x = kMiddleX + 1; x < kWidth; ++x) {
     const float step = frame(x - 1, kMiddleY).x - frame(x, kMiddleY).x;
     EXPECT_GE(step, 0) << x;
