@@ -54,6 +54,29 @@ Features seen_by_guides(const Guides& guides, std::size_t pixel) {
                                                 : Features{guides.albedo.pixels[pixel], guides.normal.pixels[pixel]};
 }
 
+// What a share of a site's radiance gives to a pixel that has `here` of what the site's pixels have in the mean.
+Vec3f share_of(const Vec3f& radiance, const Vec3f& here, const Vec3f& mean) {
+  constexpr float kLeast = 1e-4F;  // where the guides see nothing that the samples do, all pixels have the same
+  return {radiance.x * (here.x + kLeast) / (mean.x + kLeast), radiance.y * (here.y + kLeast) / (mean.y + kLeast),
+          radiance.z * (here.z + kLeast) / (mean.z + kLeast)};
+}
+
+// One light for all pixels of a site, times the albedo of each, and what each sees shine: their mean is `radiance`.
+void spread_over_pixels(const SamplingMap& map, const Site& site, const Vec3f& radiance, const Vec3f& shone,
+                        const ImageRgb& emission, DenoiserInput& out) {
+  Vec3f albedo;
+  Vec3f shining;
+  for_each_pixel(map, site, [&](int x, int y) {
+    albedo += out.albedo(x, y);
+    shining += emission(x, y);
+  });
+  const auto pixels = static_cast<float>(site.pixels);
+  for_each_pixel(map, site, [&](int x, int y) {
+    out.radiance(x, y) = share_of(radiance - shone, out.albedo(x, y), albedo / pixels) +
+                         share_of(shone, emission(x, y), shining / pixels);
+  });
+}
+
 // Light for sites without samples of their own: that of the surfaces around, smoothed as far as it is noise.
 class LightAround {
  public:
@@ -106,7 +129,6 @@ DenoiserInput denoiser_input(const SparseFrame& sparse, const SamplingMap& map, 
       // Samples of a larger site are not those of its pixels, and only where the guides know nothing better than them.
       const float samples = site.pixels == 1 ? static_cast<float>(sparse.count[i]) : 1.0F - share;
       const bool by_samples = sparse.count[i] > 0 && sparse.samples_of_others.empty();
-      Vec3f reflectance;
       for_each_pixel(map, site, [&](int x, int y) {
         const std::size_t p = out.radiance.index(x, y);
         const Features by_guides = seen_by_guides(guides, p);
@@ -116,24 +138,16 @@ DenoiserInput denoiser_input(const SparseFrame& sparse, const SamplingMap& map, 
                                 std::clamp(albedo.z, 0.0F, 1.0F)};
         out.normal.pixels[p] = (rays * by_guides.normal + samples * own.normal) / all;
         out.samples.pixels[p] = static_cast<float>(sparse.count[i]) / static_cast<float>(site.pixels);
-        reflectance += out.albedo.pixels[p] + Vec3f{kAlbedoOffset, kAlbedoOffset, kAlbedoOffset};
-      });
-      const Vec3f mean = values.value(i).radiance;
-      for_each_pixel(map, site, [&](int x, int y) {
-        const std::size_t p = out.radiance.index(x, y);
         if (!by_samples) {
           out.radiance.pixels[p] = around->radiance(x, y, i);
         } else if (site.pixels == 1) {
-          out.radiance.pixels[p] = mean;
-        } else {
-          // One light for all of its pixels, by which their mean is that of the samples.
-          const Vec3f albedo = out.albedo.pixels[p];
-          const auto pixels = static_cast<float>(site.pixels);
-          out.radiance.pixels[p] = {pixels * mean.x * (albedo.x + kAlbedoOffset) / reflectance.x,
-                                    pixels * mean.y * (albedo.y + kAlbedoOffset) / reflectance.y,
-                                    pixels * mean.z * (albedo.z + kAlbedoOffset) / reflectance.z};
+          out.radiance.pixels[p] = values.value(i).radiance;
         }
       });
+      if (by_samples && site.pixels > 1) {
+        spread_over_pixels(map, site, values.value(i).radiance,
+                           sparse.first_hits[i].shone / static_cast<float>(sparse.count[i]), guides.emission, out);
+      }
       shifted += share < 0.5F ? static_cast<std::size_t>(site.pixels) : 0;
     }
   });
