@@ -89,7 +89,14 @@ TEST(DenoiserInput, PixelsOfABlockHaveTheirOwnTextureUnderItsLight) {
     }
   }
   const SamplingMap map = map_with_fovea({0, 0}, {0, 0}, 1, 4);
-  const DenoiserInput shown = denoiser_input(samples_of(map, guides, {.light = 2}), map, guides, 2);
+  SparseFrame sparse = samples_of(map, guides, {.light = 2});
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    if (map.sites[i].block_x == 1) {  // pixels 4 to 7, of which one column shines
+      sparse.first_hits[i].shone = static_cast<float>(sparse.count[i]) * Vec3f{1.75F, 1.75F, 1.75F};
+      sparse.sum[i] += sparse.first_hits[i].shone;
+    }
+  }
+  const DenoiserInput shown = denoiser_input(sparse, map, guides, 2);
   for (int y = 0; y < kSize; ++y) {
     for (int x = 0; x < kSize; ++x) {
       const Vec3f albedo = guides.albedo(x, y);
