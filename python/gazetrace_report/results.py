@@ -154,7 +154,7 @@ class Results:
             raise Problem(f"{self.file}: there is no such file; name results.json of a sweep, or its folder") from None
         except OSError as problem:
             raise Problem(f"{self.file}: cannot be read: {problem.strerror}") from problem
-        except ValueError as problem:
+        except (ValueError, RecursionError) as problem:
             raise Problem(f"{self.file}: is no JSON: {problem}; write it again with gazetrace sweep") from problem
         form = raw.get("format") if isinstance(raw, dict) else None
         if form != FORMAT:

@@ -72,17 +72,6 @@ const ResultReference* find_reference(const Results& results, const ResultRow& r
   return keyless;
 }
 
-std::vector<const ResultReference*> find_references(const Results& results, const SceneGaze& both) {
-  std::vector<const ResultReference*> references;
-  for (const ResultRow& row : results.rows) {
-    const ResultReference* const one = SceneGaze{row.scene, row.gaze} == both ? find_reference(results, row) : nullptr;
-    if (one != nullptr && std::find(references.begin(), references.end(), one) == references.end()) {
-      references.push_back(one);
-    }
-  }
-  return references;
-}
-
 std::optional<double> find_floor(const ResultReference* reference, const std::string& gaze, const std::string& metric,
                                  const std::string& part) {
   if (reference == nullptr) {

@@ -23,8 +23,6 @@ std::vector<SceneGaze> scene_gazes(const Results& results);  // of the rows, in 
 
 // The reference that a row was measured against; empty where the file does not have it.
 const ResultReference* find_reference(const Results& results, const ResultRow& row);
-// Those of the rows of a scene and gaze: several where they differ in size or view.
-std::vector<const ResultReference*> find_references(const Results& results, const SceneGaze& both);
 std::optional<double> find_floor(const ResultReference* reference, const std::string& gaze, const std::string& metric,
                                  const std::string& part);
 

@@ -4,7 +4,7 @@
 memory at most. Makes the logs itself: EyeLink ASC, gazetrace CSV with a row for each eye, the same with a row for the
 mean as well (as `gaze convert` writes it), and a TSV of one's own.
 
-  tests/benchmarks/gaze_inspect.py build/dev/bin/gazetrace [--seconds 3600] [--folder build/gaze_hour] [--svg]
+  tests/benchmarks/gaze_inspect.py build/dev/bin/gazetrace [--seconds 3600] [--folder build/gaze_hour]
 """
 
 import argparse
@@ -105,7 +105,6 @@ def main():
     parser.add_argument("program", type=Path)
     parser.add_argument("--seconds", type=int, default=3600)
     parser.add_argument("--folder", type=Path, default=Path("build/gaze_hour"))
-    parser.add_argument("--svg", action="store_true", help="draw the picture as well")
     arguments = parser.parse_args()
     measure(arguments, make_logs(arguments.folder, arguments.seconds))
 
@@ -113,9 +112,8 @@ def main():
 def measure(arguments, logs):
     print(f"{'log':<33} {'MiB':>7} {'samples':>9} {'s':>7} {'CPU s':>7} {'peak MiB':>9}")
     for name, (path, flags) in logs.items():
-        picture = ["--svg", str(arguments.folder / "hour.svg"), "--overwrite"] if arguments.svg else []
         begin = time.perf_counter()
-        process = subprocess.Popen([arguments.program, "gaze", "inspect", path, *flags, *picture, "--json"], stdout=subprocess.PIPE)
+        process = subprocess.Popen([arguments.program, "gaze", "inspect", path, *flags, "--json"], stdout=subprocess.PIPE)
         text = process.stdout.read()
         _, status, usage = os.wait4(process.pid, 0)
         seconds = time.perf_counter() - begin

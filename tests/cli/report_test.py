@@ -163,7 +163,7 @@ class Report(reports.ReportTest):
     def test_what_is_refused(self):
         refused = lambda arguments, said: self.refused(main, arguments, said)
         refused(["nowhere"], ["nowhere", "no such file"])
-        for content, said in (("{", ["no JSON"]), ("{}", ["gazetrace-sweep-1"]), ('{"format": "gazetrace-sweep-2"}', ["gazetrace-sweep-2", "gazetrace-sweep-1 only"])):
+        for content, said in (("{", ["no JSON"]), ("[" * 100_000, ["no JSON"]), ("{}", ["gazetrace-sweep-1"]), ('{"format": "gazetrace-sweep-2"}', ["gazetrace-sweep-2", "gazetrace-sweep-1 only"])):
             self.write("a.json", content)
             refused(["a.json"], ["a.json", *said])
         for change, said in ((lambda r: r["rows"][1]["frames"][2].update(index="three"), ["rows[1].frames[2].index", "no whole number"]),
