@@ -176,8 +176,8 @@ def _bands(results, test, metric, with_pdf):
 
 def _over_time(results, test, metric, with_pdf):
     """Of clips alone: one frame has no course."""
-    rows = [row for row in results.family(test) if row.role != "wrong-gaze" and len(row.frames) > 1]
-    if not rows or len(test.frames) < 2:
+    rows = [row for row in results.family(test) if row.role != "wrong-gaze" and row.frames]
+    if len(test.frames) < 2:
         return None
     numbers = [{"id": row.id, "role": row.role, "label": row.label, "frame": frame["index"], "t_s": frame.get("t_s"), "event": frame.get("event", "none"),
                 "time_s": frame.get("time_s"), metric.name: (frame.get("scores") or {}).get(metric.name)} for row in rows for frame in row.frames]

@@ -82,7 +82,10 @@ class GazeReport(reports.ReportTest):
 
     def test_each_trial_has_its_own_places(self):
         self.write("blocks.asc", blocks(3))
-        self.made(main, "blocks.asc", "--screen-cm", "40,30", "--screen-distance-cm", "60", "-o", "page.html", "--parts", "parts")
+        self.made(main, "blocks.asc", "--screen-cm", "40,30", "--screen-distance-cm", "60", "-o", "page.html", "--json", "page.json", "--parts", "parts")
+        counts = [int(count) for count in re.findall(r"(\d+) fixations, area by duration", (self.folder / "page.html").read_text())]
+        self.assertEqual(len(counts), 3)
+        self.assertEqual(sum(counts), json.loads((self.folder / "page.json").read_text())["events"]["fixation"]["count"])
         names = self.files("parts")
         self.assertEqual([name for name in names if name.startswith("scanpath")], [f"scanpath_trial_00{n}.svg" for n in (1, 2, 3)])
         self.assertEqual(len([name for name in names if name.startswith("heat_map")]), 3)

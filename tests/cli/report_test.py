@@ -15,8 +15,8 @@ import harness
 import reports
 import small_results
 
-from gazetrace_report import diagrams, findings, pictures, sweep_page, tables, viewer, words
-from gazetrace_report.results import ROLES, Results
+from gazetrace_report import diagrams, drawing, findings, pictures, sweep_page, tables, viewer, words
+from gazetrace_report.results import ROLES, Estimate, Results
 from gazetrace_report.sweep_command import main
 
 
@@ -152,6 +152,15 @@ class Report(reports.ReportTest):
         self.assertIn("few/p.0002.png", "".join(warnings))
         self.assertIsNone(json.loads(reports.Page(text).scripts["data"])["sets"][0]["runs"][3]["pictures"][1])
 
+    def test_a_drawing_stands_twice_in_a_page(self):
+        read = Results(self.folder)
+        one = diagrams._pareto(read, read.places[0], read.metrics[0], False)
+        ids = [set(re.findall(r' id="([^"]+)"', drawing.in_page(one.svg, one.title, n))) for n in (1, 2)]
+        self.assertTrue(ids[0])
+        self.assertFalse(ids[0] & ids[1])
+        for n in (1, 2):
+            self.assertLessEqual(set(re.findall(r'(?:url\(#|href="#)([^")]+)', drawing.in_page(one.svg, one.title, n))), ids[n - 1])
+
     def test_one_frame_has_no_course(self):
         for one in self.results["rows"]:
             one["frames"] = one["frames"][:1]
@@ -233,6 +242,13 @@ class Findings(reports.ReportTest):
         self.assertEqual((one["its score"][0].mean, one["foveated score"][0].mean), (0.10, 0.12))
         self.assertTrue(lost(estimate(0.12, 0.11, 0.13), estimate(0.10, 0.09, 0.111)).empty)  # they overlap
         self.assertTrue(lost(estimate(0.10, 0.09, 0.105), estimate(0.12, 0.11, 0.13)).empty)  # a gain
+        verdict = lambda a, b, lower: findings.verdict(Estimate(*a), Estimate(*b), lower)
+        for lower in (True, False):
+            better, worse = ("better", "worse") if lower else ("worse", "better")
+            self.assertEqual(verdict((1, 0.9, 1.1), (1.3, 1.2, 1.4), lower), better)
+            self.assertEqual(verdict((1.3, 1.2, 1.4), (1, 0.9, 1.1), lower), worse)
+            self.assertEqual(verdict((1, 0.9, 1.25), (1.3, 1.2, 1.4), lower), "not told apart")
+            self.assertEqual(verdict((1, None, None), (1.3, 1.2, 1.4), lower), "not told apart")
         self.assertTrue(lost(estimate(0.002, 0.0019, 0.0021, False), estimate(0.001, 0.0009, 0.0011, False)).empty)
         self.assertEqual(len(lost(estimate(9.1, 9.0, 9.2), estimate(9.5, 9.4, 9.6), "higher")), 1)
 
