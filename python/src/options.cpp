@@ -4,12 +4,16 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "bind.hpp"
 #include "gazetrace/compare_job.hpp"
 #include "gazetrace/former_options.hpp"
 #include "gazetrace/job.hpp"
 #include "gazetrace/job_schema.hpp"
 #include "gazetrace/metric_options.hpp"
+#include "gazetrace/output.hpp"
+#include "gazetrace/resolve.hpp"
 
 namespace gazetrace::python {
 namespace {
@@ -55,6 +59,21 @@ std::string former_of(const std::string& keyword) {
   return {};
 }
 
+// Names that the program looks up when it resolves a job, which here may be long after they were given.
+void check_names(const Job& job) {
+  static_cast<void>(gaze_steps_of(job.settings.gaze_process));
+  if (const std::string& name = job.settings.screen.name; !name.empty() && !name.ends_with(".json")) {
+    ScreenSettings screen;
+    screen.name = name;
+    static_cast<void>(screen_geometry(screen));
+  }
+  for (const std::string& name : job.settings.exr.aovs) {
+    if (std::find(aov_names().begin(), aov_names().end(), name) == aov_names().end()) {
+      throw Error(ErrorKind::usage, "`aov`", unknown_name_message("channel", name, aov_names()));
+    }
+  }
+}
+
 // An empty list takes away what was given to an option that may be given several times.
 void set_by_keywords(Job& job, const std::vector<std::pair<std::string, std::vector<std::string>>>& keywords) {
   std::vector<GivenOption> given;
@@ -69,6 +88,7 @@ void set_by_keywords(Job& job, const std::vector<std::pair<std::string, std::vec
     }
   }
   set_options(job, given);
+  check_names(job);
 }
 
 }  // namespace

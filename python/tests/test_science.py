@@ -106,7 +106,10 @@ class GazeOfAJobTest(TestCase):
         self.assertEqual((job["gaze_latency"], job["gaze_start"]), (other["gaze_latency"], other["gaze_start"]))
 
     def test_names_are_checked_when_they_are_given(self):
-        self.assertSays("did you mean 'guided'", "usage", gazetrace.Job, filter="gidued")
+        for options, words in (({"filter": "gidued"}, "did you mean 'guided'"), ({"gaze_process": "medn"}, "did you mean 'median'"),
+                               ({"aov": "albeod"}, "did you mean 'albedo'"), ({"screen": "papre"}, "did you mean 'paper'")):
+            self.assertSays(words, "usage", gazetrace.Job, **options)
+            self.assertSays(words, "usage", gazetrace.Job().replace, **options)
 
     def test_one_warning_says_all(self):
         job = gazetrace.Job(gaze=GAZE_LOG, gaze_latency="50ms", frames=range(1, 3), **SMALL)
