@@ -88,7 +88,9 @@ void bind_former_options(CLI::App& app, const OptionList& options, const TakeFor
                      })
           ->group("");
     } else {
-      app.add_flag_function(flag, [take, name = former.option](std::int64_t) { take(name, {"true"}); })->group("");
+      app.add_flag_function(
+             flag, [take, name = former.option](std::int64_t count) { take(name, {count > 0 ? "true" : "false"}); })
+          ->group("");
     }
   }
 }

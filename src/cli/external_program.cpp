@@ -37,7 +37,12 @@ const CLI::App* command_within(const CLI::App& app, const std::string& name) {
 }  // namespace
 
 void add_external_command(CLI::App& above, const std::string& name, const std::string& help) {
-  above.add_subcommand(name, help)->prefix_command();  // which tells it from those that are built in
+  CLI::App* const sub = above.add_subcommand(name, help);
+  sub->prefix_command();  // which tells it from those that are built in
+  sub->callback([name] {
+    throw Error(ErrorKind::usage, "'" + name + "'", "is a program of its own, and none of its options come before it",
+                "put them behind it");
+  });
 }
 
 std::optional<fs::path> find_on_path(const std::string& name) {

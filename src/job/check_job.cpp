@@ -9,6 +9,7 @@
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/foveation.hpp"
+#include "gazetrace/reconstruct.hpp"
 #include "gazetrace/resolve.hpp"
 #include "job/outputs.hpp"
 #include "job/quality_defaults.hpp"
@@ -146,6 +147,10 @@ void check_job(const Job& asked, const JobSchema& schema) {
   const JobSettings& job = whole.settings;
   check_foveation(job.foveation);
   check_filter_name(job.filter, "`filter`");
+  if (job.filter == "oidn" && denoiser_library().path.empty()) {  // a record may be read without it
+    throw Error(ErrorKind::usage, "`filter`", "Open Image Denoise was not found",
+                "run cmake/denoiser.sh with the build folder, or name the library in GAZETRACE_OIDN_LIBRARY");
+  }
   if (looks_first(job.foveation.sampling) && !job.foveation.target.is_given()) {
     FrameRequest request;
     request.width_px = job.size.width;

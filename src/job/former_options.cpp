@@ -57,9 +57,13 @@ std::string halved(const std::string& text) {
 std::string filled(std::string text, const std::vector<std::string>& given) {
   std::istringstream parts(fmt::format("{}", fmt::join(given, ",")));
   std::string part;
+  const bool has_star = text.find('*') != std::string::npos;
   for (std::size_t star = text.find('*'); star != std::string::npos && std::getline(parts, part, ',');) {
     text.replace(star, 1, part);
     star = text.find('*', star + part.size());
+  }
+  while (has_star && std::getline(parts, part, ',')) {
+    text += "," + part;  // for the option to refuse
   }
   return text;
 }

@@ -35,12 +35,12 @@ std::set<int, std::greater<>> block_sizes(const SamplingMap& map) {
   return sizes;
 }
 
-// In blocks, with the margin, inside the frame.
+// In blocks, with the margin, inside the frame. Where still finer blocks lie beside coarser ones, it fades in between.
 Rect blocks_of_level(const SamplingMap& map, int block_px) {
   Rect px{map.width_px, map.height_px, 0, 0};
   for (int y = 0; y < map.height_px; ++y) {
     for (int x = 0; x < map.width_px; ++x) {
-      if (block_at(map, x, y) == block_px) {
+      if (block_at(map, x, y) <= block_px) {
         px = {std::min(px.x, x), std::min(px.y, y), std::max(px.x_end, x + 1), std::max(px.y_end, y + 1)};
       }
     }

@@ -10,8 +10,8 @@
 
 namespace gazetrace {
 
-// The part of the frame where blocks are of one size, and a margin around it: [x, x + width) x [y, y + height), counted
-// in blocks from the frame's origin.
+// The part of the frame where blocks are of one size or finer, and a margin around it: [x, x + width) x [y, y +
+// height), counted in blocks from the frame's origin.
 struct DenoiserLevel {
   int block_px = 1;
   int x_blocks = 0, y_blocks = 0;

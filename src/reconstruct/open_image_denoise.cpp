@@ -118,6 +118,9 @@ std::optional<Found> open_library(const std::string& file, std::string& problem)
   Device device = nullptr;
   problem = make_device(found.library, 1, device);
   if (!problem.empty()) {
+    if (device != nullptr) {
+      found.library.release_device(device);
+    }
     return std::nullopt;
   }
   const auto number = [&](const char* name) { return std::to_string(found.library.get_device_int(device, name)); };
@@ -174,6 +177,7 @@ class SharedDevice {
       if (device_ != nullptr) {
         call.release_device(device_);
       }
+      threads_ = 0;  // which nobody asks for, until it works
       check(make_device(call, threads, device_));
       threads_ = threads;
     }

@@ -36,6 +36,15 @@ class Denoiser(harness.CliTest):
                             ["Open Image Denoise was not found"], **none)
         self.assertIn("denoiser: none", self.run_ok("version", **none).stdout)
 
+    def test_pictures_are_compared_and_looked_at_without_it(self):
+        if not json.loads(self.run_ok("version", "--json").stdout)["denoiser"]["path"]:
+            self.skipTest("Open Image Denoise was not found")
+        self.run_ok("render", "box.gltf", *STILL, "--filter", "oidn", "-o", "a.exr")
+        none = {"environment": {VARIABLE: ""}}
+        self.run_ok("compare", "a.exr", "a.exr", **none)
+        self.assert_refused(["render", "box.gltf", *STILL, "--filter", "guided", "-o", "a.exr", "--resume"],
+                            ["--filter was oidn and is guided"], **none)
+
     def test_where_it_is_found_it_is_the_choice_and_in_the_record(self):
         found = json.loads(self.run_ok("version", "--json").stdout)["denoiser"]
         if not found["path"]:

@@ -135,6 +135,10 @@ class Talk(harness.CliTest):
                 text = lines[i] + lines[i + 1]
                 self.assertRegex(text, r"\s{2,}\S*[A-Za-z0-9].*[a-z]{2,}", text)
 
+    def test_programs_of_their_own_come_first(self):
+        for words in (["report"], ["gaze", "report"]):
+            self.assert_refused(["--config", "a.toml", *words], ["'report' is a program of its own"])
+
     def test_lists(self):
         families = json.loads(self.run_ok("list", "--json").stdout)
         self.assertEqual({member["name"] for member in families["samplings"]} >= {"regions", "uniform"}, True)

@@ -28,10 +28,6 @@ bool has_name(const std::vector<std::string>& names, const std::string& name) {
 
 void check_filter_name(const std::string& name, const std::string& place) {
   const std::vector<std::string> known = names_of_all(reconstruction_filters());
-  if (name == "oidn" && denoiser_library().path.empty()) {
-    throw Error(ErrorKind::usage, place, "Open Image Denoise was not found",
-                "run cmake/denoiser.sh with the build folder, or name the library in GAZETRACE_OIDN_LIBRARY");
-  }
   if (name == "auto" || has_name(known, name)) {
     return;
   }
@@ -44,7 +40,8 @@ void add_filter_options(JobSchema& schema) {
   schema
       .value("--filter", &JobSettings::filter, "NAME", Touch::filter,
              "Fills pixels between samples and takes noise away ('gazetrace list filters'; where the samples are is "
-             "--density, which has a 'linear', too). auto: guided; linear, "
+             "--density, which has a 'linear', too). auto: oidn where Open Image Denoise is found and frames are not "
+             "accumulated, else guided; linear, "
              "which passes single pixels through, with --accumulate-order before, and for uniform frames "
              "with --accumulate running or --only-pixel")
       .checked_by(check_filter_name)

@@ -63,6 +63,17 @@ TEST(FormerOptions, AnOptionMayStandForHalfOfTheNumbersOrForNothing) {
   EXPECT_EQ(now("shape", "round").notice, "`shape` round is no longer said; all are round");
 }
 
+TEST(FormerOptions, PartsForWhichThereIsNoPlaceAreNotDropped) {
+  const std::vector<FormerOption> table{
+      former_option(FormerKind::renamed, "--ends *", "--curve line:from=*,to=*", "it is said with it")};
+  const auto curve_of = [&](const std::string& value) {
+    const OptionText given{"ends", {value}};
+    return current_options(given, {given}, ErrorKind::usage, "here", table).settings;
+  };
+  EXPECT_THAT(curve_of("1,2"), ElementsAre(Pair("curve", ElementsAre("line:from=1,to=2"))));
+  EXPECT_THAT(curve_of("1,2,3"), ElementsAre(Pair("curve", ElementsAre("line:from=1,to=2,3"))));
+}
+
 TEST(FormerOptions, WhatNoRowSpeaksOfStaysAsItIs) {
   EXPECT_THAT(now("size", "64x36").settings, ElementsAre(Pair("size", ElementsAre("64x36"))));
   EXPECT_EQ(now("size", "64x36").notice, "");

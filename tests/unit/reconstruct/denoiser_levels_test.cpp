@@ -117,6 +117,29 @@ TEST(DenoiserLevels, FineLevelsShowBehindTheirBorderAndNeverBeyond) {
   }
 }
 
+TEST(DenoiserLevels, FineBlocksBesideCoarseOnesShowNothingFromFarAway) {
+  // Blocks of 2 px at the left, and of 1 px at the right between those of 4 px.
+  Layout layout;
+  layout.regions = {{"fine", 1, 4, SampleUnit::per_block},
+                    {"middle", 2, 4, SampleUnit::per_block},
+                    {"coarse", 4, 4, SampleUnit::per_block}};
+  layout.region = Image<std::uint8_t>(kWidth, kHeight, 2);
+  for (int y = 40; y < 80; ++y) {
+    for (int x = 0; x < 12; ++x) {
+      layout.region(x, y) = 1;
+    }
+    for (int x = 120; x < 160; ++x) {
+      layout.region(x, y) = 0;
+    }
+  }
+  const SamplingMap map = map_from_layout(std::move(layout));
+  const std::vector<DenoiserLevel> levels = denoiser_levels(input_of([](int x, int y) { return x + 3 * y; }), map, 2);
+  const ImageRgb frame = blend_levels(levels, undenoised(levels), map, 2);
+  for (int x = 100; x < 180; ++x) {
+    ASSERT_NEAR(frame(x, 60).x, x + 3 * 60, 1e-3) << x;
+  }
+}
+
 TEST(DenoiserLevels, FrameOfSinglePixelsKeepsItsBits) {
   Layout layout;
   layout.regions = {{"uniform", 1, 4, SampleUnit::per_block}};
