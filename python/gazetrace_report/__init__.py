@@ -4,6 +4,7 @@
 Pure Python over the files that the program writes: `results.json` of a sweep, and what `gazetrace gaze measure` says of
 a recording. `gazetrace report` and `gazetrace gaze report` are its commands; `report()` is the first in Python."""
 
+import warnings
 from pathlib import Path
 
 
@@ -15,5 +16,6 @@ def report(results, output=None, *, plots=None, max_mib=5):
     from .results import Results
     read = Results(results)
     path = Path(output) if output else read.folder / "report.html"
-    make(read, path, Path(plots) if plots else None, max_mib)
+    for warning in make(read, path, Path(plots) if plots else None, max_mib)[1]:
+        warnings.warn(warning, stacklevel=2)
     return path

@@ -6,14 +6,14 @@ import sys
 from .command_line import Problem, end
 
 
-def sweep(words=None):
+def sweep(finds_itself=False):
     from .sweep_command import main
-    end("gazetrace report", main)
+    end("gazetrace report", main, finds_itself)
 
 
-def gaze(words=None):
+def gaze(finds_itself=False):
     from .gaze_command import main
-    end("gazetrace gaze report", main)
+    end("gazetrace gaze report", main, finds_itself)
 
 
 def which(words):

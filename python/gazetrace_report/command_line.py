@@ -2,13 +2,14 @@
 """What the commands share: one rule for --json, files that are written whole, and what can go wrong in one line on the
 error stream, with the program's exit codes."""
 
+import contextlib
 import json
 import os
 import sys
 from pathlib import Path
 
 PACKAGES = {"matplotlib": "python3-matplotlib", "jinja2": "python3-jinja2", "pandas": "python3-pandas"}
-USAGE, FAILED = 2, 3
+USAGE, FAILED, INTERRUPTED = 2, 3, 4
 
 
 class Problem(Exception):
@@ -19,8 +20,9 @@ class Problem(Exception):
         self.code = code
 
 
-def end(name, main):
-    """Runs `main` with the command line's words and ends the process with its exit code."""
+def end(name, main, finds_itself=False):
+    """Runs `main` with the command line's words and ends the process with its exit code. `finds_itself`: the program that was
+    started finds this package in any Python, as what pip installs does not."""
     try:
         sys.exit(main(sys.argv[1:]))
     except Problem as problem:
@@ -29,10 +31,13 @@ def end(name, main):
     except ModuleNotFoundError as missing:
         if missing.name not in PACKAGES:
             raise
-        _try_the_systems_python()
+        if finds_itself:
+            _try_the_systems_python()
         print(f"gazetrace: error: {name} needs {', '.join(PACKAGES)}: install them, on Debian with "
               f"'apt-get install {' '.join(PACKAGES.values())}'", file=sys.stderr)
         sys.exit(FAILED)
+    except KeyboardInterrupt:
+        sys.exit(INTERRUPTED)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
@@ -40,7 +45,7 @@ def end(name, main):
 def _try_the_systems_python():
     """Another Python that comes first on the PATH knows nothing of the distribution's packages."""
     system = "/usr/bin/python3"
-    if os.path.basename(sys.argv[0]).startswith("gazetrace-") and os.access(system, os.X_OK) and not os.environ.get("GAZETRACE_REPORT_TRIED"):
+    if os.access(system, os.X_OK) and not os.environ.get("GAZETRACE_REPORT_TRIED"):
         if os.path.realpath(sys.executable) != os.path.realpath(system) or sys.prefix != sys.base_prefix:
             os.execve(system, [system, *sys.argv], {**os.environ, "GAZETRACE_REPORT_TRIED": "1"})
 
@@ -92,5 +97,6 @@ def write(path, content):
         rest.write_bytes(data)
         os.replace(rest, path)
     except OSError as problem:
-        rest.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            rest.unlink()
         raise Problem(f"{path}: cannot be written: {problem.strerror}", FAILED) from problem

@@ -8,9 +8,10 @@ import re
 from importlib import resources
 
 import matplotlib
-
-matplotlib.use("agg")
-from matplotlib import pyplot  # noqa: E402
+import matplotlib.style
+import matplotlib.ticker
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
 INK, GRID = "#1c1c1c", "#d8d8d8"
 STYLE = resources.files(__package__) / "data" / "gazetrace.mplstyle"
@@ -18,13 +19,11 @@ STYLE = resources.files(__package__) / "data" / "gazetrace.mplstyle"
 
 @contextlib.contextmanager
 def figure(width=4.6, height=3.3, **more):
-    """A figure with its axes in the style of all; closed at the end."""
-    with pyplot.style.context(str(STYLE)):
-        fig, axes = pyplot.subplots(figsize=(width, height), **more)
-        try:
-            yield fig, axes
-        finally:
-            pyplot.close(fig)
+    """A figure with its axes in the style of all, whatever the user's own; apart from pyplot, whose backend is the caller's."""
+    with matplotlib.style.context(["default", str(STYLE)]):
+        fig = Figure(figsize=(width, height))
+        FigureCanvasAgg(fig)
+        yield fig, fig.subplots(**more)
 
 
 def svg_of(fig, title):

@@ -41,13 +41,14 @@ def picture(path):
         return None
     import numpy
     from PIL import Image
+    from .pictures import UNREADABLE
     try:
         image = Image.open(path)
         if image.format not in ("PNG", "JPEG"):
             raise Problem(f"{path}: is neither PNG nor JPEG; give a rendered frame, such as frame.0001.png")
         image = image.convert("RGB")
-    except OSError as problem:
-        raise Problem(f"{path}: cannot be read as a picture: {problem.strerror or problem}") from problem
+    except UNREADABLE as problem:
+        raise Problem(f"{path}: cannot be read as a picture: {getattr(problem, 'strerror', None) or problem}") from problem
     image.thumbnail((960, 960))
     return numpy.asarray(image)
 
@@ -55,7 +56,7 @@ def picture(path):
 def measure(words, folder):
     done = subprocess.run([program(), "gaze", "measure", *words, "--tables", str(folder), "--json"], stdout=subprocess.PIPE, text=True)
     if done.returncode:
-        sys.exit(done.returncode)
+        sys.exit(done.returncode if done.returncode > 0 else 128 - done.returncode)
     return json.loads(done.stdout)
 
 

@@ -47,7 +47,7 @@ def make(numbers, diagrams):
     figures = {"events": [], "places": [], "time": []}
     for n, one in enumerate(shown):
         figures[one.section].append({"svg": drawing.in_page(one.svg, one.title, n), "note": one.note, "title": one.title})
-    warnings = [text.split(": ", 1)[1] if text.startswith(numbers["source"]) or f"/{numbers['source']}: " in text else text for text in numbers["warnings"]]
+    warnings = [text.split(": ", 1)[1] if text.startswith(f"{numbers['source']}: ") or f"/{numbers['source']}: " in text else text for text in numbers["warnings"]]
     q = numbers["quality"][0]
     facts = f"{q['samples']} samples in {words.number(q['duration_s'], 5)} s, {numbers['events']['fixation']['count']} fixations, data loss {known(None if q['data_loss'] is None else 100 * q['data_loss'], '%')}"
     return templates().get_template("gaze.html").render(

@@ -14,6 +14,7 @@ from . import words
 LEAST_WIDTH = 480  # pictures are not reduced below this
 QUALITY, LEAST_QUALITY = 90, 75  # of JPEG
 SAMPLED = 6        # pictures from which sizes are predicted
+UNREADABLE = (OSError, ValueError, SyntaxError, Image.DecompressionBombError)  # as Pillow says it
 
 
 @dataclass
@@ -87,7 +88,7 @@ def embed_all(paths_of_frames, most_bytes):
             size = embed(path, Form())
             sampled.append(path)
             first = first or size
-        except (OSError, ValueError):
+        except UNREADABLE:
             pass  # warned about when all are read
     if not sampled:
         return Pictures({}, "There are no pictures.", [f"no picture could be read, such as {every[0]}"] if every else [])
@@ -107,7 +108,7 @@ def embed_all(paths_of_frames, most_bytes):
 def _tried(path, form):
     try:
         return embed(path, form)
-    except (OSError, ValueError) as problem:
+    except UNREADABLE as problem:
         return f"{path}: cannot be read as a picture: {problem}"
 
 

@@ -149,7 +149,7 @@ class Results:
 
     def _read(self):
         try:
-            raw = json.loads(self.file.read_bytes())
+            raw = json.loads(self.file.read_bytes(), parse_constant=lambda name: None)  # NaN and Infinity are no JSON, and nothing to draw
         except FileNotFoundError:
             raise Problem(f"{self.file}: there is no such file; name results.json of a sweep, or its folder") from None
         except OSError as problem:

@@ -45,8 +45,7 @@ def make(results, drawn, max_mib):
                     "bands": tables.bands(results, place) if results.parts else ""} for place in results.places],
         "published": tables.published(results), "fixed_quality": tables.fixed_quality(results), "controls": tables.controls(results),
         "methods": results.raw.get("methods") or "The results hold no paragraph of methods.", "notes": results.raw.get("notes") or [], "facts": facts(results),
-        "has_course": any(one.kind == "time" for one in drawn),
-        "pictures": "", "data": "",
+        "pictures": "", "names_pictures": True, "data": "",
     }
     template = templates().get_template("sweep.html")
     paths = [of_frame for one in sets for of_frame in one.paths()]
@@ -55,6 +54,7 @@ def make(results, drawn, max_mib):
     if other > max_mib * MIB:
         embedded.warnings.append(f"tables and diagrams alone take {other / MIB:.2f} MiB, more than the limit of {max_mib:g} MiB")
     data["sets"], data["pictures"] = viewer.sets_as_data(sets, names, embedded)
+    values["names_pictures"] = any(paths)
     values["pictures"] = f"{embedded.statement} The page's limit is {max_mib:g} MiB."
     return template.render(values, data=script_safe(data)), embedded.warnings
 

@@ -8,6 +8,7 @@ import json
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import xml.etree.ElementTree
 
@@ -151,6 +152,22 @@ class Report(reports.ReportTest):
         text, warnings = self.page_of()
         self.assertIn("few/p.0002.png", "".join(warnings))
         self.assertIsNone(json.loads(reports.Page(text).scripts["data"])["sets"][0]["runs"][3]["pictures"][1])
+        # Where there is nothing to look at, the page says why.
+        said = lambda text: re.search(r'id="viewer-none" hidden>([^<]*)', text).group(1)
+        self.assertIn("No picture fits", said(self.page_of(0.01)[0]))
+        for one in self.results["rows"]:
+            one["frames"] = []
+        self.write("results.json", json.dumps(self.results))
+        self.assertIn("name no pictures", said(self.page_of()[0]))
+
+    def test_a_broken_picture_is_said(self):
+        from PIL import Image
+        Image.effect_noise((300, 300), 90).convert("RGB").save(self.folder / "few/p.0002.png")
+        data = bytearray((self.folder / "few/p.0002.png").read_bytes())
+        last = data.rindex(b"IDAT")
+        data[last:last + 4] = bytes(4)
+        (self.folder / "few/p.0002.png").write_bytes(data)
+        self.assertIn("few/p.0002.png: cannot be read as a picture", "".join(self.page_of()[1]))
 
     def test_a_drawing_stands_twice_in_a_page(self):
         read = Results(self.folder)
@@ -170,7 +187,7 @@ class Report(reports.ReportTest):
         self.assertEqual({plot["kind"] for plot in json.loads(self.page().scripts["data"])["plots"]}, {"pareto", "bands"})
 
     def test_what_is_refused(self):
-        refused = lambda arguments, said: self.refused(main, arguments, said)
+        refused = lambda arguments, said, code=2: self.refused(main, arguments, said, code)
         refused(["nowhere"], ["nowhere", "no such file"])
         for content, said in (("{", ["no JSON"]), ("[" * 100_000, ["no JSON"]), ("{}", ["gazetrace-sweep-1"]), ('{"format": "gazetrace-sweep-2"}', ["gazetrace-sweep-2", "gazetrace-sweep-1 only"])):
             self.write("a.json", content)
@@ -183,17 +200,23 @@ class Report(reports.ReportTest):
             self.write("a.json", json.dumps(broken))
             refused(["a.json"], said)
         refused([".", "--max-mib", "0"], ["--max-mib"])
+        self.write("file", "no folder")
+        refused([".", "-o", "file/in/it.html"], ["file/in/it.html: cannot be written"], 3)
         self.write("report.html", "mine")
         refused(["."], ["report.html", "--overwrite"])
         self.assertEqual((self.folder / "report.html").read_text(), "mine")
 
     def test_without_the_packages_one_line_says_what_to_install(self):
         # A Python that has none of them: its own library alone.
-        done = subprocess.run(["/usr/bin/env", "python3", "-S", "-B", harness.PROGRAM + "-report", str(self.folder)], capture_output=True, text=True,
-                              env={"PATH": "/usr/bin:/bin", "GAZETRACE_REPORT_TRIED": "1"})
-        self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
-        self.assertIn("apt-get install python3-matplotlib python3-jinja2 python3-pandas", done.stderr)
+        # What pip installs is found by its own Python alone: another one is not asked.
+        installed = self.write("bin/gazetrace-report", "from gazetrace_report.__main__ import sweep\nsweep()\n")
+        subprocess.run([sys.executable, "-m", "venv", "--without-pip", self.folder / "venv"], check=True)
+        for command, variables in ((["/usr/bin/env", "python3", "-S", "-B", harness.PROGRAM + "-report"], {"GAZETRACE_REPORT_TRIED": "1"}),
+                                   ([self.folder / "venv/bin/python", "-B", installed], {"PYTHONPATH": str(harness.SOURCE / "python")})):
+            done = subprocess.run([*command, str(self.folder)], capture_output=True, text=True, env={"PATH": "/usr/bin:/bin", **variables})
+            self.assertEqual(done.returncode, 3, done.stderr)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+            self.assertIn("apt-get install python3-matplotlib python3-jinja2 python3-pandas", done.stderr)
 
     def test_the_demo_finishes_without_the_page(self):
         (self.folder / "data").mkdir()
@@ -212,12 +235,12 @@ class Report(reports.ReportTest):
             self.assertEqual("apt-get install python3-matplotlib" in done.stderr, not has_page)
 
     def test_a_program_on_the_path_is_a_command(self):
-        script = self.write("bin/gazetrace-hello-there", '#!/bin/sh\necho "hello $*"\nexit 7\n')
+        script = self.write("bin/gazetrace-hello-there", '#!/bin/sh\nprintf "<%s>" "$@"\nexit 7\n')
         script.chmod(0o755)
         self.write("bin/gazetrace-gaze-wave", '#!/bin/sh\necho "waves $*"\n').chmod(0o755)
         path = {"PATH": f"{self.folder}/bin:/usr/bin:/bin"}
-        done = self.run_program("hello-there", "a b", "--c", environment=path)
-        self.assertEqual((done.stdout, done.returncode), ("hello a b --c\n", 7))
+        done = self.run_program("hello-there", "a b", "--c", "", "$(d)", environment=path)
+        self.assertEqual((done.stdout, done.returncode), ("<a b><--c><><$(d)>", 7))
         self.assertEqual(self.run_ok("gaze", "wave", "1", environment=path).stdout, "waves 1\n")
         self.assertEqual(self.run_ok("help", "gaze", "wave", environment=path).stdout, "waves --help\n")
         self.assert_refused(["hello-there"], ["unknown command"])
@@ -376,6 +399,16 @@ class Findings(reports.ReportTest):
             page, _ = sweep_page.make(read, sweep_page.draw(read), 5)
             self.assertFalse(re.findall(r".{20}[^a-z-](?:nan|inf)[^a-z]", page))
             self.assertIn("a sweep", page)
+        # Names are texts, no formulas, and what is not finite is not known.
+        priced = [row("t", "test", estimate(0.1, 0.09, 0.11)), row("u", "equal-time", {"mean": float("inf")}), row("v", "uniform-rate", {"mean": float("nan")})]
+        for one in priced:
+            one.update(label="a$b^$c {", gaze="$\\frac{")
+        read = self.read(results(*priced))
+        drawn = sweep_page.draw(read)[0]
+        self.assertIn("a$b^$c {", drawn.svg)
+        self.assertEqual(list(drawn.numbers.id), ["t"])
+        self.assertIn("a$b^$c {", sweep_page.make(read, [drawn], 5)[0])
+        self.assertNotIn("matplotlib.pyplot", sys.modules, "a notebook keeps its own backend")
         rows = [row("a/b", "test", estimate(0.1, 0.09, 0.11)), row("a b", "test", estimate(0.1, 0.09, 0.11))]
         for one in rows:
             one["frames"] = [{"index": i, "t_s": i / 10, "time_s": 2, "scores": {"flip": 0.1}} for i in (1, 2)]
