@@ -26,10 +26,10 @@ enum class PixelFilter : std::uint8_t { box, blackman_harris };
 class LearnedLight;  // opaque; made by PosedScene::learn_light
 
 struct TraceSettings {
-  int max_bounces = 3;  // scattering events on a path; 0 shows emission only
+  int max_bounces = 16;  // scattering events on a path; 0 shows emission only
   // From the third scattering event on, a path survives with probability min(0.95, sqrt(largest channel of its
   // throughput)), and its weight is divided by that probability; not at the last event that max_bounces allows.
-  bool russian_roulette = false;
+  bool russian_roulette = true;
   DiffuseModel diffuse = DiffuseModel::burley;
   LightSampling light_sampling = LightSampling::mis;
   // Upper bound (radiance, on the largest channel) of each contribution that reaches the camera after more than one
@@ -58,6 +58,7 @@ struct TraceSettings {
   // them. Their difference says how far off their mean is (SparseFrame::half_difference). Each half is stratified by
   // itself, so that a mean over both has a little more noise than one over a single sequence.
   bool halves = false;
+  bool first_half = false;               // with halves: collect SparseFrame::first_half
   std::optional<PixelIndex> only_pixel;  // trace only the site that holds this pixel
   // Asked before every piece of work, from several threads: once it is true, tracing ends with Error(interrupted), and
   // the frame is lost. Empty: never.
@@ -147,6 +148,12 @@ struct LightLearning {
   std::uint64_t paths = 0;                    // that it took, which are discarded
 };
 
+// Sum over those samples of a site that are one of its halves.
+struct HalfSum {
+  Vec3f radiance;
+  std::uint32_t count = 0;  // of those that are numbers
+};
+
 // What the tracer found: one entry per site of the map, in the map's order.
 struct SparseFrame {
   int width_px = 0, height_px = 0;
@@ -160,6 +167,7 @@ struct SparseFrame {
   // n_b their numbers of samples. Its expectation is 0, and that of its square is the variance of the mean of all
   // samples: it is a replica of that mean's error. 0 where a half has no samples; empty unless TraceSettings::halves.
   std::vector<float> half_difference;
+  std::vector<HalfSum> first_half;  // empty unless TraceSettings::first_half
   // The surfaces of site i are surfaces[first_surface[i]] up to, not including, surfaces[first_surface[i + 1]]. Samples
   // that miss, or hit an unlit surface, belong to none. Both are empty unless TraceSettings::surfaces.
   std::vector<SurfaceSums> surfaces;

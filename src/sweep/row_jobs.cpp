@@ -132,6 +132,12 @@ Job reference_job(const SweepRequest& request, const SweepFileScene& scene, cons
     take(job, test, schema, [](const Option& option) { return option.is(Trait::clock); });
   }
   check_truth_is_known(job, setting, schema);
+  if (job.settings.trace.max_bounces < test.settings.trace.max_bounces) {
+    throw Error(ErrorKind::input, place_of(request.file, "bounces"),
+                fmt::format("the reference has {} bounces, and a row {}: light would be missing",
+                            job.settings.trace.max_bounces, test.settings.trace.max_bounces),
+                "give `bounces` in [reference]");
+  }
   return job;
 }
 

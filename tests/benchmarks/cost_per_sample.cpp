@@ -44,6 +44,8 @@ Vec3d parse_point(const char* text) {
 
 Options parse(int argc, char** argv) {
   Options options;
+  options.settings.max_bounces = 3;
+  options.settings.russian_roulette = false;
   for (int i = 1; i < argc; ++i) {
     const std::string_view name = argv[i];
     const char* value = i + 1 < argc ? argv[i + 1] : "";

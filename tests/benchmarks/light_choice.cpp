@@ -51,6 +51,8 @@ struct Options {
 
 Options parse(int argc, char** argv) {
   Options options;
+  options.settings.max_bounces = 3;
+  options.settings.russian_roulette = false;
   for (int i = 1; i < argc; ++i) {
     const std::string_view name = argv[i];
     if (name.substr(0, 2) != "--") {

@@ -84,14 +84,17 @@ Options parse(int argc, char** argv) {
 
 std::vector<Row> make_rows(PathTracer& tracer, double frame_mean) {
   std::vector<Row> rows;
-  TraceSettings exact;
+  TraceSettings usual;
+  usual.max_bounces = 3;
+  usual.russian_roulette = false;
+  TraceSettings exact = usual;
   exact.bounce_cone_rad = 0;
   const auto add = [&](std::string name, bool biased, const std::function<void(TraceSettings&, TraceSettings&)>& set) {
-    Row row{std::move(name), TraceSettings{}, TraceSettings{}, &tracer, biased};
+    Row row{std::move(name), usual, usual, &tracer, biased};
     set(row.settings, row.exact);
     rows.push_back(std::move(row));
   };
-  add("default, against exact textures", true, [&](auto&, auto& reference) { reference = exact; });
+  add("3 bounces, against exact textures", true, [&](auto&, auto& reference) { reference = exact; });
   for (const int bounces : {1, 2, 3, 4, 6}) {
     add(fmt::format("--bounces {}", bounces), true, [&](auto& settings, auto& reference) {
       settings.max_bounces = bounces;

@@ -123,6 +123,7 @@ TEST(MitsubaReference, NoWindowDiffers) {
     const SamplingMap map = uniform_map(size_px, size_px, kSpp);
     TraceSettings settings;
     settings.max_bounces = entry["bounces"];
+    settings.russian_roulette = false;
     settings.diffuse = entry["materials"] == "matte" ? DiffuseModel::matte : DiffuseModel::burley;
     std::vector<std::vector<double>> repeats;
     for (int s = 0; s < kSeeds; ++s) {

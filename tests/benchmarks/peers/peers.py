@@ -66,6 +66,7 @@ def command(program, options, scene, out, size, spp, seed, view):
     """The command line of one render; `view` holds environment, camera and materials."""
     common = ["--size", size, "--spp", str(spp), "--seed", str(seed), "--bounces", str(options.bounces), *view]
     if program in ("gazetrace", "gazetrace-plain"):
+        common += ["--no-russian-roulette"]
         common += ["--no-learn-light"] if program == "gazetrace-plain" else []
         materials = ["--diffuse", "matte" if options.materials == "matte" else "burley"]
         # The scene without normal maps links to the files of the one that was given.
