@@ -34,7 +34,8 @@ struct ReconstructionNeeds {
   // Sums per surface (SparseFrame::surfaces). Only samples can be sorted by surface: an accumulated frame and the sums
   // of a part of the samples do not hold them.
   bool surfaces = false;
-  bool halves = false;  // SparseFrame::half_difference, and samples that are traced in halves
+  bool halves = false;      // SparseFrame::half_difference, and samples that are traced in halves
+  bool first_half = false;  // SparseFrame::first_half
 };
 
 struct FilterInfo {

@@ -18,7 +18,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr SealedKind kTraced{"gazetrace traced 5", "file of a traced frame",
+constexpr SealedKind kTraced{"gazetrace traced 6", "file of a traced frame",
                              "give the folder that `stage` trace wrote into",
                              "trace this frame again, with `stage` trace and `resume`",
                              "trace this frame again with the settings of `stage` finish"};
@@ -67,6 +67,7 @@ void each_sum(Sparse& sparse, Visit& visit) {
   visit(sparse.guides);
   visit(sparse.light_groups);
   visit(sparse.half_difference);
+  visit(sparse.first_half);
   visit(sparse.surfaces);
   visit(sparse.first_surface);
   visit(sparse.first_hits);
@@ -175,12 +176,13 @@ bool fits_together(const TracedFrame& traced) {
                             ? sparse.surfaces.empty()
                             : sparse.first_surface.size() == sites + 1 && sparse.first_surface.front() == 0 &&
                                   sparse.first_surface.back() == sparse.surfaces.size();
-  const bool sizes =
-      in_tiles == sites && surfaces && map.region.width_px == map.width_px && map.region.height_px == map.height_px &&
-      sparse.width_px == map.width_px && sparse.height_px == map.height_px && sparse.sum.size() == sites &&
-      sparse.sum_square_luminance.size() == sites && sparse.count.size() == sites && one_each(sparse.guides) &&
-      one_each(sparse.light_groups) && one_each(sparse.half_difference) && one_each(sparse.first_hits) &&
-      one_each(map.expected_samples) && sparse.stats.regions.size() == map.regions.size();
+  const bool sizes = in_tiles == sites && surfaces && map.region.width_px == map.width_px &&
+                     map.region.height_px == map.height_px && sparse.width_px == map.width_px &&
+                     sparse.height_px == map.height_px && sparse.sum.size() == sites &&
+                     sparse.sum_square_luminance.size() == sites && sparse.count.size() == sites &&
+                     one_each(sparse.guides) && one_each(sparse.light_groups) && one_each(sparse.half_difference) &&
+                     one_each(sparse.first_half) && one_each(sparse.first_hits) && one_each(map.expected_samples) &&
+                     sparse.stats.regions.size() == map.regions.size();
   return sizes && covers_frame(map);
 }
 

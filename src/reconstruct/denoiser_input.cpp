@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "core/parallel.hpp"
@@ -52,6 +53,14 @@ Features seen_by_samples(const SparseFrame& sparse, std::size_t site) {
 Features seen_by_guides(const Guides& guides, std::size_t pixel) {
   return only_shines(guides.kind.pixels[pixel]) ? Features{}
                                                 : Features{guides.albedo.pixels[pixel], guides.normal.pixels[pixel]};
+}
+
+// Of a half without samples: that of all.
+Vec3f mean_of_half(const SparseFrame& sparse, std::size_t site, std::size_t half, const Vec3f& mean) {
+  const HalfSum& first = sparse.first_half[site];
+  const std::uint32_t count = half == 0 ? first.count : sparse.count[site] - first.count;
+  const Vec3f sum = half == 0 ? first.radiance : sparse.sum[site] - first.radiance;
+  return count == 0 ? mean : sum / static_cast<float>(count);
 }
 
 // What a share of a site's radiance gives to a pixel that has `here` of what the site's pixels have in the mean.
@@ -118,6 +127,12 @@ DenoiserInput denoiser_input(const SparseFrame& sparse, const SamplingMap& map, 
   out.albedo = out.radiance;
   out.normal = out.radiance;
   out.samples = ImageGray(map.width_px, map.height_px);
+  const auto is_several = [](std::uint32_t count) { return count > 1; };
+  const bool has_halves = !sparse.first_half.empty() && sparse.samples_of_others.empty() &&
+                          std::any_of(sparse.count.begin(), sparse.count.end(), is_several);
+  if (has_halves) {
+    out.halves = {out.radiance, out.radiance};
+  }
   std::atomic<std::size_t> shifted = 0;
   parallel_for(map.tiles.size(), threads, [&](std::size_t t) {
     const MapTile& tile = map.tiles[t];
@@ -142,6 +157,10 @@ DenoiserInput denoiser_input(const SparseFrame& sparse, const SamplingMap& map, 
           out.radiance.pixels[p] = around->radiance(x, y, i);
         } else if (site.pixels == 1) {
           out.radiance.pixels[p] = values.value(i).radiance;
+        }
+        for (std::size_t half = 0; has_halves && half < 2; ++half) {
+          out.halves[half].pixels[p] =
+              by_samples ? mean_of_half(sparse, i, half, values.value(i).radiance) : out.radiance.pixels[p];
         }
       });
       if (by_samples && site.pixels > 1) {

@@ -2,6 +2,7 @@
 #include "reconstruct/denoiser_levels.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -61,12 +62,16 @@ DenoiserLevel level_of(const DenoiserInput& frame, const SamplingMap& map, int b
   input.normal = input.radiance;
   input.samples = ImageGray(at.x_end - at.x, at.y_end - at.y);
   input.clean = frame.clean;
+  if (!frame.halves[0].empty()) {
+    input.halves = {input.radiance, input.radiance};
+  }
   parallel_for(static_cast<std::size_t>(at.y_end - at.y), threads, [&](std::size_t row) {
     const int block_y = at.y + static_cast<int>(row);
     for (int block_x = at.x; block_x < at.x_end; ++block_x) {
       Vec3d radiance;
       Vec3d albedo;
       Vec3d normal;
+      std::array<Vec3d, 2> halves;
       double samples = 0;
       int pixels = 0;
       for (int y = block_y * block_px; y < std::min((block_y + 1) * block_px, map.height_px); ++y) {
@@ -74,6 +79,9 @@ DenoiserLevel level_of(const DenoiserInput& frame, const SamplingMap& map, int b
           radiance += to_double(frame.radiance(x, y));
           albedo += to_double(frame.albedo(x, y));
           normal += to_double(frame.normal(x, y));
+          for (std::size_t half = 0; half < 2 && !frame.halves[half].empty(); ++half) {
+            halves[half] += to_double(frame.halves[half](x, y));
+          }
           samples += static_cast<double>(frame.samples(x, y));
           ++pixels;
         }
@@ -83,6 +91,9 @@ DenoiserLevel level_of(const DenoiserInput& frame, const SamplingMap& map, int b
       input.radiance.pixels[i] = to_float(share * radiance);
       input.albedo.pixels[i] = to_float(share * albedo);
       input.normal.pixels[i] = to_float(share * normal);
+      for (std::size_t half = 0; half < 2 && !frame.halves[half].empty(); ++half) {
+        input.halves[half].pixels[i] = to_float(share * halves[half]);
+      }
       input.samples.pixels[i] = static_cast<float>(samples);
     }
   });

@@ -219,6 +219,19 @@ class SharedDevice {
   int threads_ = 0;
 };
 
+}  // namespace
+
+const DenoiserLibrary& denoiser_library() {
+  return library().info;
+}
+
+std::string denoiser_description() {
+  const DenoiserLibrary& found = denoiser_library();
+  return found.path.empty()
+             ? ""
+             : "Open Image Denoise " + found.version + ", quality high, built-in weights, " + found.instruction_set;
+}
+
 ImageRgb without_outliers(const ImageRgb& radiance) {
   double logarithms = 0;
   std::size_t lit = 0;
@@ -240,19 +253,6 @@ ImageRgb without_outliers(const ImageRgb& radiance) {
     }
   }
   return shown;
-}
-
-}  // namespace
-
-const DenoiserLibrary& denoiser_library() {
-  return library().info;
-}
-
-std::string denoiser_description() {
-  const DenoiserLibrary& found = denoiser_library();
-  return found.path.empty()
-             ? ""
-             : "Open Image Denoise " + found.version + ", quality high, built-in weights, " + found.instruction_set;
 }
 
 ImageRgb open_image_denoise(const DenoiserInput& input, int threads) {

@@ -16,5 +16,6 @@ ImageRgb open_image_denoise(const DenoiserInput& input, int threads);
 // No pixel is shown to the network brighter than this times the geometric mean of all that are lit. By 2e4 times a
 // single pixel leaves no trace, by 2e6 it dims what is around it, and by 2e10 it lights all of the picture.
 inline constexpr float kMostOverMean = 1e5F;
+ImageRgb without_outliers(const ImageRgb& radiance);
 
 }  // namespace gazetrace

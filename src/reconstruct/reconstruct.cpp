@@ -60,7 +60,8 @@ FilterInfo info_of(const NamedFilter& filter) {
 void check_needs(const ReconstructionNeeds& needs, const SparseFrame& sparse, const SamplingMap& map,
                  const Guides* guides) {
   if ((needs.guides && guides == nullptr) || (needs.surfaces && sparse.first_surface.size() != map.sites.size() + 1) ||
-      (needs.halves && sparse.half_difference.size() != map.sites.size())) {
+      (needs.halves && sparse.half_difference.size() != map.sites.size()) ||
+      (needs.first_half && sparse.first_half.size() != map.sites.size())) {
     throw Error(ErrorKind::runtime, "reconstruct", "the filter needs guides, sums per surface and halves",
                 "trace with Reconstruction::trace_settings and pass guides of Reconstruction::guide_settings");
   }
@@ -89,6 +90,7 @@ Reconstruction::Reconstruction(const ReconstructionSettings& settings) {
 TraceSettings Reconstruction::trace_settings(TraceSettings settings) const {
   settings.surfaces = filter_.needs.surfaces;
   settings.halves = filter_.needs.halves;
+  settings.first_half = filter_.needs.first_half;
   return settings;
 }
 

@@ -53,6 +53,9 @@ class SiteAdder {
     if (!out_.half_difference.empty()) {
       out_.half_difference[site] = half_difference(bright, count);
     }
+    if (!out_.first_half.empty()) {
+      add_first_half(site);
+    }
     if (!out_.first_surface.empty()) {
       add_surfaces(site, count, surfaces);
     }
@@ -72,6 +75,18 @@ class SiteAdder {
     const std::size_t before = surfaces.size();
     sorter_.finish_site(out_.first_hits.empty() ? std::array<std::uint32_t, 2>{} : count, surfaces);
     out_.first_surface[site] = static_cast<std::uint32_t>(surfaces.size() - before);
+  }
+
+  // Of the frames with even numbers, as half_of() has it.
+  void add_first_half(std::size_t site) {
+    Vec3d radiance;
+    for (const SamplesOfFrame& one : frames_) {
+      if (half_of(one) == 0) {
+        radiance += to_double(one.sparse->sum[site]);
+        out_.first_half[site].count += one.sparse->count[site];
+      }
+    }
+    out_.first_half[site].radiance = to_float(radiance);
   }
 
   void add_guides(std::size_t site) {
@@ -188,6 +203,7 @@ SamplesAtRest add_up(const std::vector<SamplesOfFrame>& frames, const GuideCamer
   out.guides.resize(first.guides.size());
   out.light_groups.resize(first.light_groups.size());
   out.half_difference.resize(first.half_difference.size());
+  out.first_half.resize(first.first_half.size());
   out.first_surface.resize(first.first_surface.size());
   out.first_hits.resize(first.first_hits.size());
   std::vector<std::vector<SurfaceSums>> surfaces(all.map.tiles.size());

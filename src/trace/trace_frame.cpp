@@ -33,6 +33,7 @@ SparseFrame untraced_frame(const SamplingMap& map, const TraceSettings& settings
   out.guides.resize(settings.guides ? sites : 0);
   out.light_groups.resize(settings.light_groups ? sites : 0);
   out.half_difference.resize(settings.halves ? sites : 0);
+  out.first_half.resize(settings.halves && settings.first_half ? sites : 0);
   out.first_surface.resize(settings.surfaces ? sites + 1 : 0);
   out.first_hits.resize(settings.surfaces ? sites : 0);
   out.stats.regions.resize(map.regions.size());

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Intel Open Image Denoise, shown what it was trained on: radiance, albedo and normal of every pixel
 // (denoiser_input.hpp), at the resolution of its samples (denoiser_levels.hpp). The network runs once for each size of
-// blocks.
+// blocks, or three times (denoise.hpp).
 #include <utility>
 #include <vector>
 
+#include "reconstruct/denoise.hpp"
 #include "reconstruct/denoiser_input.hpp"
 #include "reconstruct/denoiser_levels.hpp"
 #include "reconstruct/filter.hpp"
-#include "reconstruct/open_image_denoise.hpp"
 
 namespace gazetrace {
 
 const FilterDefinition filter_oidn{
-    .needs = {.guides = GuideSettings{.spp = kDenoiserGuideRays}, .surfaces = true, .halves = true},
+    .needs = {.guides = GuideSettings{.spp = kDenoiserGuideRays}, .surfaces = true, .halves = true, .first_half = true},
     .frame = [](const FilterInput& input) {
       // AOVs and the variance of the samples are those of the linear filter.
       Frame frame = filter_linear.frame(input);
@@ -21,7 +21,7 @@ const FilterDefinition filter_oidn{
       const std::vector<DenoiserLevel> levels = denoiser_levels(shown, input.map, input.threads);
       std::vector<ImageRgb> pictures;
       for (const DenoiserLevel& level : levels) {
-        pictures.push_back(open_image_denoise(level.input, input.threads));
+        pictures.push_back(denoise(level.input, input.threads));
       }
       frame.radiance = blend_levels(levels, pictures, input.map, input.threads);
       frame.sample_count = std::move(shown.samples);

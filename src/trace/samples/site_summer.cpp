@@ -72,6 +72,9 @@ void SiteSummer::add(const Workspace& work, std::size_t count) {
       add_groups(work.groups, i, sum_.groups);
     }
     halves_.add(luminance(to_double(radiance)), work.samples.half[i]);
+    if (work.samples.half[i] == 0) {
+      sum_.light.first_half += to_double(radiance);
+    }
     if (surfaces_) {
       sorter_.add(work.surfaces, i, to_double(radiance), work.samples.half[i]);
       if (!out_.first_hits.empty()) {
@@ -99,6 +102,9 @@ void SiteSummer::finish_site() {
   }
   for (std::size_t group = 0; group < kLightGroups && !out_.light_groups.empty(); ++group) {
     out_.light_groups[site_].sum[group] = to_float(sum_.groups[group]);
+  }
+  if (!out_.first_half.empty()) {
+    out_.first_half[site_] = {to_float(sum_.light.first_half), halves_.count[0]};
   }
   sum_ = {};
   if (!out_.half_difference.empty()) {

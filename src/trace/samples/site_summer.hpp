@@ -26,6 +26,7 @@ struct SiteLightSums {
   Vec3d radiance;
   double square_luminance = 0;
   std::uint32_t count = 0;
+  Vec3d first_half;  // the radiance of HalfSum
 };
 struct SiteGuideSums {
   Vec3d albedo, normal;

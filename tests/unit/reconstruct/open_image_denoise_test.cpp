@@ -71,12 +71,13 @@ TEST_F(OpenImageDenoise, ThreadsChangeNoBit) {
 }
 
 TEST_F(OpenImageDenoise, OneAbsurdSampleLeavesTheRestOfThePicture) {
+  const double usual = error_of(open_image_denoise(noisy_wall(), 2));
   for (const float absurd :
        {1e8F, 1e30F, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
     DenoiserInput input = noisy_wall();
     input.radiance(kSize / 2, kSize / 2) = {absurd, absurd, absurd};
     const ImageRgb result = open_image_denoise(input, 2);
-    EXPECT_LT(error_of(result, 12), 0.12) << absurd;
+    EXPECT_LT(error_of(result, 12), 2 * usual) << absurd;
     for (const Vec3f& pixel : result.pixels) {
       ASSERT_TRUE(std::isfinite(pixel.x) && pixel.x < 20 * kTruth) << absurd;
     }

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// A frame through the network, and as much of its samples beside it as they know better.
+#pragma once
+
+#include "reconstruct/denoiser_input.hpp"
+
+namespace gazetrace {
+
+// From this mean number of samples a pixel on the network runs three times: over the frame and over each half of its
+// samples. What a half has beyond the network's picture of it is right as far as the other half has it as well: the
+// noise of the two is independent, and what the network leaves out is in both. In two bands of coarseness, the finer of
+// which ends at kCoarsePx, the share by which the halves agree around a pixel is given back to it. With many samples
+// the picture so becomes their mean.
+inline constexpr float kSamplesOfBlend = 16;
+inline constexpr int kCoarsePx = 8;
+
+// Error(runtime) as open_image_denoise().
+ImageRgb denoise(const DenoiserInput& input, int threads);
+
+}  // namespace gazetrace

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// The network and the samples beside it, on pictures whose truth is known; where Open Image Denoise is found.
+#include "reconstruct/denoise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <random>
+
+#include "gazetrace/reconstruct.hpp"
+#include "reconstruct/open_image_denoise.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr int kSize = 96;
+
+struct Planted {
+  float texture = 0;  // standard deviation of light that changes from pixel to pixel, which no feature tells
+  float noise = 0;    // of the mean of a pixel's samples
+  float samples = 64;
+};
+
+struct Picture {
+  ImageRgb truth;
+  DenoiserInput input;
+};
+
+Picture planted(const Planted& planted) {
+  Picture out;
+  out.truth = ImageRgb(kSize, kSize);
+  out.input.radiance = out.truth;
+  out.input.halves = {out.truth, out.truth};
+  out.input.albedo = ImageRgb(kSize, kSize, {0.5F, 0.5F, 0.5F});
+  out.input.normal = ImageRgb(kSize, kSize, {0, 0, 1});
+  out.input.samples = ImageGray(kSize, kSize, planted.samples);
+  out.input.clean = true;
+  std::mt19937 random(5);
+  std::normal_distribution<float> normal;
+  for (std::size_t i = 0; i < out.truth.pixels.size(); ++i) {
+    const float light = 0.5F + planted.texture * normal(random);
+    out.truth.pixels[i] = {light, light, light};
+    for (ImageRgb& half : out.input.halves) {
+      const float seen = light + std::sqrt(2.0F) * planted.noise * normal(random);
+      half.pixels[i] = {seen, seen, seen};
+    }
+    out.input.radiance.pixels[i] = 0.5F * (out.input.halves[0].pixels[i] + out.input.halves[1].pixels[i]);
+  }
+  return out;
+}
+
+double error_of(const ImageRgb& picture, const ImageRgb& truth) {
+  double squares = 0;
+  for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+    const double off = static_cast<double>(picture.pixels[i].y) - static_cast<double>(truth.pixels[i].y);
+    squares += off * off;
+  }
+  return std::sqrt(squares / static_cast<double>(truth.pixels.size()));
+}
+
+class Denoise : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (denoiser_library().path.empty()) {
+      GTEST_SKIP() << "Open Image Denoise was not found; cmake/denoiser.sh brings it";
+    }
+  }
+};
+
+// What the network takes for noise, and both halves have, comes back.
+TEST_F(Denoise, IsNoWorseThanSamplesThatKnowBetter) {
+  const Picture picture = planted({.texture = 0.1F, .noise = 0.01F});
+  const double raw = error_of(picture.input.radiance, picture.truth);
+  ASSERT_GT(error_of(open_image_denoise(picture.input, 2), picture.truth), 3 * raw);
+  EXPECT_LT(error_of(denoise(picture.input, 2), picture.truth), 1.1 * raw);
+}
+
+TEST_F(Denoise, IsTheNetworksWhereThereIsNothingButNoise) {
+  const Picture picture = planted({.texture = 0, .noise = 0.1F});
+  const double network = error_of(open_image_denoise(picture.input, 2), picture.truth);
+  ASSERT_LT(network, 0.2 * error_of(picture.input.radiance, picture.truth));
+  EXPECT_LT(error_of(denoise(picture.input, 2), picture.truth), 2 * network);
+}
+
+// Few samples say little about their own error: the network runs once.
+TEST_F(Denoise, IsTheNetworksWithFewSamples) {
+  const Picture picture = planted({.texture = 0.1F, .noise = 0.01F, .samples = 15});
+  EXPECT_EQ(denoise(picture.input, 2), open_image_denoise(picture.input, 2));
+}
+
+TEST_F(Denoise, ThreadsChangeNoBit) {
+  const Picture picture = planted({.texture = 0.05F, .noise = 0.05F});
+  EXPECT_EQ(denoise(picture.input, 1), denoise(picture.input, 2));
+}
+
+}  // namespace
+}  // namespace gazetrace
