@@ -133,6 +133,7 @@ TEST(ExtremeLight, EmissionFrom1eMinus30To1e30) {
       add_mesh(scene, {quad({{{-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}}}, 1)});
       TraceSettings settings = one_bounce(sampling);
       settings.max_bounces = 4;
+      settings.russian_roulette = false;
       const SparseFrame frame =
           PathTracer(scene, threads(2)).at_rest().trace(above(), 1, uniform_map(16, 16, 64), settings);
       EXPECT_EQ(frame.stats.non_finite_samples + frame.stats.rejected_rays, 0U) << emission;

@@ -85,6 +85,7 @@ TEST(ExtremeScale, NoLightLeaksIntoAClosedBox) {
     TraceSettings settings;
     settings.diffuse = DiffuseModel::matte;
     settings.max_bounces = 12;
+    settings.russian_roulette = false;
     double leaked = 0, by_light_samples = 0, rays = 0;
     for (int face = 0; face < 6; ++face) {
       settings.seed = static_cast<std::uint64_t>(face);

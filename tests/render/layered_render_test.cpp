@@ -112,6 +112,7 @@ TEST(LayeredFurnace, AWhiteSphereIsInvisible) {
     for (std::uint64_t seed = 1; seed <= 16; ++seed) {
       TraceSettings settings;
       settings.max_bounces = 128;
+      settings.russian_roulette = false;
       settings.seed = seed;
       const SparseFrame frame = tracer.at_rest().trace(camera_at({2, 3, 4}, {0, 0, 0}, 15), 1, map, settings);
       EXPECT_EQ(frame.stats.kernel, "all");
@@ -162,6 +163,7 @@ TEST(LayeredLight, AGlassPlateAttenuatesAsBeerAndFresnelSay) {
   const SamplingMap map = uniform_map(8, 8, 1024);
   TraceSettings settings;
   settings.max_bounces = 12;
+  settings.russian_roulette = false;
   const auto seen = [](double a) {
     const double r = 0.04;
     const double rest = (1 - r) * (1 - r) / (1 - r * r * a * a);
@@ -267,6 +269,7 @@ TEST(LayeredDeterminism, OneAndTwoThreadsGiveTheSameBits) {
   const SamplingMap map = uniform_map(64, 48, 8);
   TraceSettings settings;
   settings.max_bounces = 6;
+  settings.russian_roulette = false;
   const Camera camera = camera_at({2, 2, 5}, {0, 0, 0});
   const SparseFrame one = PathTracer(scene, threads(1)).at_rest().trace(camera, 1, map, settings);
   const SparseFrame two = PathTracer(scene, threads(2)).at_rest().trace(camera, 1, map, settings);

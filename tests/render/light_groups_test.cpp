@@ -127,6 +127,7 @@ TraceSettings settings_of(DiffuseModel diffuse, int max_bounces = 3) {
   TraceSettings settings;
   settings.diffuse = diffuse;
   settings.max_bounces = max_bounces;
+  settings.russian_roulette = false;
   return settings;
 }
 

@@ -44,6 +44,7 @@ TEST(TracerLight, AWhiteGlowingBoxAddsOneForEveryBounce) {
       TraceSettings settings;
       settings.diffuse = diffuse;
       settings.max_bounces = bounces;
+      settings.russian_roulette = false;
       settings.light_sampling = LightSampling::bsdf_only;
       const Vec3d mean =
           mean_radiance(tracer.at_rest().trace(camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1}), 1, map, settings));
@@ -68,6 +69,7 @@ TEST(TracerLight, AGlowingLambertianBoxIsTheGeometricSeries) {
     TraceSettings settings;
     settings.diffuse = DiffuseModel::matte;
     settings.max_bounces = 96;  // 0.8^97 < 4e-10
+    settings.russian_roulette = false;
     const double expected = 1.0 / (1.0 - static_cast<double>(albedo));
 
     // Cosine sampling of a cosine lobe has no variance here: exact up to float sums.
@@ -103,6 +105,7 @@ TEST(TracerLight, ExtremeEmissionKeepsTheSeries) {
       TraceSettings settings;
       settings.diffuse = DiffuseModel::matte;
       settings.max_bounces = 40;
+      settings.russian_roulette = false;
       const double expected = static_cast<double>(emission) / (1.0 - 0.5);
       settings.light_sampling = LightSampling::bsdf_only;
       EXPECT_NEAR(mean_radiance(tracer.at_rest().trace(camera, 1, uniform_map(8, 8, 4), settings)).y / expected, 1,
@@ -138,6 +141,7 @@ TEST(TracerLight, ClampingBoundsIndirectLightOnly) {
     settings.diffuse = DiffuseModel::matte;
     settings.light_sampling = LightSampling::bsdf_only;
     settings.max_bounces = 20;
+    settings.russian_roulette = false;
     for (const float limit : {0.0F, 1e-3F, 0.1F, 0.3F, 0.6F, 10.0F}) {
       settings.clamp_indirect = static_cast<double>(limit);
       const double bound = limit > 0 ? static_cast<double>(limit) : 2.0;
