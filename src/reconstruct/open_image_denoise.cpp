@@ -5,6 +5,7 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -242,14 +243,28 @@ ImageRgb without_outliers(const ImageRgb& radiance) {
       ++lit;
     }
   }
-  const float most = lit > 0 ? kMostOverMean * static_cast<float>(std::exp(logarithms / static_cast<double>(lit))) : 0;
+  const float mean = lit > 0 ? static_cast<float>(std::exp(logarithms / static_cast<double>(lit))) : 0;
+  const auto brightest_beside = [&](int x, int y) {
+    float most = 0;
+    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, radiance.height_px - 1); ++j) {
+      for (int i = std::max(x - 1, 0); i <= std::min(x + 1, radiance.width_px - 1); ++i) {
+        const float light = luminance(radiance(i, j));
+        most = (i == x && j == y) || !is_lit(light) ? most : std::max(most, light);
+      }
+    }
+    return most;
+  };
   ImageRgb shown = radiance;
-  for (Vec3f& pixel : shown.pixels) {
-    const float light = luminance(pixel);
-    if (!std::isfinite(light)) {
-      pixel = {};
-    } else if (light > most) {
-      pixel = pixel * (most / light);
+  for (int y = 0; y < shown.height_px; ++y) {
+    for (int x = 0; x < shown.width_px; ++x) {
+      Vec3f& pixel = shown(x, y);
+      const float light = luminance(pixel);
+      if (!std::isfinite(light)) {
+        pixel = {};
+      } else if (light > kMostAloneOverMean * mean) {
+        const bool alone = light > kAloneOverBeside * brightest_beside(x, y);
+        pixel = pixel * (std::min(light, (alone ? kMostAloneOverMean : kMostOverMean) * mean) / light);
+      }
     }
   }
   return shown;

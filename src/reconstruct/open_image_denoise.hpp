@@ -13,9 +13,13 @@ namespace gazetrace {
 // message, or says that there is none.
 ImageRgb open_image_denoise(const DenoiserInput& input, int threads);
 
-// No pixel is shown to the network brighter than this times the geometric mean of all that are lit. By 2e4 times a
-// single pixel leaves no trace, by 2e6 it dims what is around it, and by 2e10 it lights all of the picture.
+// No pixel is shown to the network brighter than kMostOverMean times the geometric mean of all that are lit; and one
+// that is kAloneOverBeside times as bright as each of the eight around it, no brighter than kMostAloneOverMean times
+// that. A single pixel of 1e3 times the mean leaves no trace, 1e5 times lights a picture of 96 x 96 pixels by a tenth,
+// 1e10 times all of any.
 inline constexpr float kMostOverMean = 1e5F;
+inline constexpr float kMostAloneOverMean = 1e3F;
+inline constexpr float kAloneOverBeside = 100;
 ImageRgb without_outliers(const ImageRgb& radiance);
 
 }  // namespace gazetrace
