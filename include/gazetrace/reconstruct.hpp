@@ -80,9 +80,10 @@ class Reconstruction {
 
 // The library that the filter "oidn" calls, Open Image Denoise 2.
 struct DenoiserLibrary {
-  std::string path;             // empty: none was found
+  std::string path;             // empty: none was found that can be used
   std::string version;          // "2.5.1"
   std::string instruction_set;  // of its loops: "avx512", "avx2", "sse4.1" or "neon"
+  std::string problem;          // without a path: why the first file that was found cannot be used
 };
 // Looks for it when it is first called: the environment variable GAZETRACE_OIDN_LIBRARY names its file or folder, or
 // is empty, and there is none; else the system's, one beside the program or in its build folder, that of Python's

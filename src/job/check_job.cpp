@@ -148,7 +148,9 @@ void check_job(const Job& asked, const JobSchema& schema) {
   check_foveation(job.foveation);
   check_filter_name(job.filter, "`filter`");
   if (job.filter == "oidn" && denoiser_library().path.empty()) {  // a record may be read without it
-    throw Error(ErrorKind::usage, "`filter`", "Open Image Denoise was not found",
+    const std::string& problem = denoiser_library().problem;
+    throw Error(ErrorKind::usage, "`filter`",
+                "Open Image Denoise was not found" + (problem.empty() ? "" : "; " + problem),
                 "run cmake/denoiser.sh with the build folder, or name the library in GAZETRACE_OIDN_LIBRARY");
   }
   if (looks_first(job.foveation.sampling) && !job.foveation.target.is_given()) {

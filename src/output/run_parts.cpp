@@ -71,6 +71,13 @@ bool of_one_job(const RunRecord& a, const RunRecord& b) {
 void check_same_settings(const std::vector<RunPart>& parts) {
   const RunPart& first = parts.front();
   for (const RunPart& part : parts) {
+    if (!of_one_job(part.record, first.record) && part.record.denoiser.empty() != first.record.denoiser.empty()) {
+      const bool first_has = part.record.denoiser.empty();
+      throw Error(ErrorKind::input, part.timing_path,
+                  fmt::format("was rendered {} Open Image Denoise, and {} {} it", first_has ? "without" : "by",
+                              first.timing_path, first_has ? "by" : "without"),
+                  "render them all where it is found, or with another `filter`");
+    }
     if (!of_one_job(part.record, first.record)) {
       throw Error(ErrorKind::input, part.timing_path, "was rendered with other settings than " + first.timing_path,
                   "keep parts of one job in a folder");

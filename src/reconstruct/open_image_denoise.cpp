@@ -152,12 +152,16 @@ Found look_for_library() {
     }
     return *found;
   }
+  Found none;
   for (const std::string& file : places_of_denoiser()) {
     if (const std::optional<Found> found = open_library(file, problem)) {
       return *found;
     }
+    if (file != kDenoiserFile && none.info.problem.empty()) {
+      none.info.problem = file + " cannot be used: " + problem;
+    }
   }
-  return {};
+  return none;
 }
 
 const Found& library() {

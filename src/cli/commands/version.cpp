@@ -22,7 +22,8 @@ Command add_version_command(CLI::App& app, const Invocation& /*invocation*/) {
             try {
               found = denoiser_library();
               denoiser = found.path.empty()
-                             ? "none: the filter guided takes the place of oidn; cmake/denoiser.sh brings it"
+                             ? "none: the filter guided takes the place of oidn; " +
+                                   (found.problem.empty() ? "cmake/denoiser.sh brings it" : found.problem)
                              : denoiser_description() + ", " + found.path;
             } catch (const Error& unusable) {
               denoiser = unusable.what();
