@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gazetrace/display.hpp"
 #include "gazetrace/error.hpp"
@@ -32,7 +33,9 @@ std::string_view to_string(Eye eye);
 std::string_view to_string(GazeDevice device);
 
 enum class TimeUnit { automatic, ns, us, ms, s };
-enum class PositionUnit { automatic, fraction, px, mm, cm, deg, unit_vector };
+// norm and height are PsychoPy's, from the center: norm runs from -1 to 1 along both axes, height is -0.5 to 0.5 of the
+// display's height.
+enum class PositionUnit { automatic, fraction, px, mm, cm, deg, unit_vector, norm, height, rad };
 // Where (0, 0) is, and which way y grows: down from the top, up from the bottom and from the center. Fractions from the
 // center run from -1 to 1. automatic: the center for degrees, and the top left for everything else.
 enum class PositionOrigin { automatic, top_left, bottom_left, center };
@@ -48,7 +51,9 @@ std::string_view to_string(PositionUnit unit);
 std::string_view to_string(PositionOrigin origin);
 std::string_view to_string(GazeAxes axes);
 
-enum class UnorderedPolicy { error, sort };
+// What is done with stamps that do not grow: refused; sorted, where the last of equal ones is kept; equal ones in pairs
+// stand half a step apart; a counter that overflowed goes on.
+enum class UnorderedPolicy { error, sort, pairs, unwrap };
 
 // Which gaze is taken of a log that has both eyes.
 //   automatic  the log's own combined gaze where it has one, which may jump when an eye is lost. Else the mean; but the
@@ -63,6 +68,17 @@ enum class EyeChoice { automatic, left, right, mean, dominant, best };
 // What a conclusion was drawn from, the most trusted first. Conclusions from statistics are guesses.
 enum class Evidence : std::uint8_t { option, sidecar, header, format, statistics };
 std::string_view to_string(Evidence evidence);
+
+// A decision about a file that nothing states and its numbers leave open, or that is stated and that its own numbers
+// speak against.
+struct ReadingDoubt {
+  std::string code;      // as GazeFinding::code
+  std::string what;      // the question, or what is wrong
+  std::string evidence;  // the figures
+  std::string setting;   // the options that answer it, in back quotes
+  bool is_open = true;   // nothing states it
+  bool refuses = true;   // nothing but an inspection reads the file so
+};
 
 template <class Value>
 struct Concluded {
@@ -130,6 +146,7 @@ struct Conventions {
   std::optional<Concluded<Taken>> eye_taken;
 
   Warnings warnings;  // about what was overruled, and what had to be guessed
+  std::vector<ReadingDoubt> doubts;
 };
 
 }  // namespace gazetrace

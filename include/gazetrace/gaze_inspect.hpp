@@ -94,7 +94,8 @@ struct GazeFinding {
              // "missing-value", "decimal-commas", "y-flip", "x-flip", "swapped-axes", "frozen", "disparity", ...
   std::string what;
   std::string evidence;
-  std::string setting;  // what mends it, such as "`gaze-flip-y`" or "`gaze-unit` px"; empty: no option does
+  std::string setting;   // what mends it, such as "`gaze-flip-y`" or "`gaze-unit` px"; empty: no option does
+  bool is_open = false;  // a question that `setting` answers: until then only an inspection reads the file
 };
 
 struct GazeInspection {

@@ -5,6 +5,7 @@
 // conventions to see what log results from them.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,11 @@
 
 namespace gazetrace {
 
-// The x and y that the display's top left corner has from a row of the file on.
+// The x and y that the display's top left corner has from a row of the file on, and the display's size.
 struct CornerFromRow {
   std::size_t first_row = 0;  // an index into `RawGaze::rows`
   Vec2d corner;
+  std::array<int, 2> size_px{};  // 0: not stated
 };
 
 // From this line of the file on, everything belongs to one recording: an index into `RawGaze::recordings`. Origins and
@@ -74,6 +76,11 @@ struct RawGaze {
   // Degrees that become directions grow upwards, whatever origin was stated or guessed for them. If this is false, they
   // grow downwards where they count from the top left.
   bool directions_grow_up = false;
+  std::int64_t clock_restarts_row = 0;  // the first row from which on the clock counts anew; 0: there is none
+  // Of each block where they differ, horizontally and vertically.
+  std::vector<Vec2d> pixels_per_degree_of_blocks;
+  bool is_own_table = false;    // a table that no format defines: nothing about its numbers is certain by itself
+  bool are_points = false;      // directions are written as points in space, of any length
   std::string place;            // file:line where `declared` is stated, for messages
   std::string way_out;          // for gaze on a scene camera's picture: what could be read instead
   std::vector<GazeFact> notes;  // what else the file states, in words
@@ -88,8 +95,9 @@ struct RawGaze {
 // no log, for broken rows, and for columns, units or recordings that are not known.
 RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options);
 
-// What `options` state replaces what the log declares, and what neither states is guessed from the numbers; both give a
-// warning. Throws Error(input) for gaze on a scene camera's picture, unless `options.frame` asks for it.
+// What `options` state replaces what the log declares, with a warning. What neither states is taken from the numbers.
+// The result's `doubts` say what these leave open and what they speak against: every command asks them. Throws
+// Error(input) for gaze on a scene camera's picture, unless `options.frame` asks for it.
 Conventions conclude_conventions(const RawGaze& raw, const GazeReadOptions& options);
 
 // The same raw gaze and the same conventions give the same log, bit by bit. Throws Error(input) with file:line for a

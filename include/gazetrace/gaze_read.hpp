@@ -61,7 +61,8 @@ GazeColumns merge_gaze_columns(const GazeColumns& base, const GazeColumns& over)
 //                 refused
 //   head          directions from the head, which eye tracking glasses and logs in degrees have
 //   scene_camera  places on the scene camera's picture, which can be inspected and converted only
-enum class GazeFrame { automatic, head, scene_camera };
+//   world         the directions of the log stand in the space of the head's poses, and are turned into the head
+enum class GazeFrame { automatic, head, scene_camera, world };
 
 struct GazeReadOptions {
   std::string format;  // a name of `gaze_formats()`; empty: found by the file's content
@@ -94,6 +95,9 @@ struct GazeReadOptions {
   // Numbers are written with a decimal comma although commas also separate the cells: the cells are joined again. Where
   // tabs or semicolons separate the cells, decimal commas are understood without this.
   bool decimal_comma = false;
+  // What nothing states but the numbers decide against all rivals is taken; otherwise it is refused like what they
+  // leave open.
+  bool accepts_inferred = false;
   // For inspecting a log, never for rendering. Where pixels need the size of a display that is stated nowhere, a common
   // size that holds them is assumed, with a warning and with `Evidence::statistics`; degrees then become directions.
   bool guess_display = false;
@@ -120,5 +124,8 @@ std::vector<GazeFormatInfo> gaze_formats();
 // order or repeated (unless sorting was asked for: then the last row of equal stamps is kept, and a warning counts the
 // others), for columns and units that are not known, and for gaze on a scene camera's picture.
 GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options);
+
+// The decisions about a log's numbers as a table, with what each rests on and the figures of what else they could be.
+std::string decisions_in_words(const std::vector<GazeFact>& facts);
 
 }  // namespace gazetrace

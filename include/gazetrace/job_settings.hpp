@@ -35,7 +35,6 @@ struct GazeFileSettings {
   GazeReadOptions read;
   std::string columns_file;  // a column map; what `read` says overrides it
   std::optional<double> min_confidence;
-  bool sort = false;
   TrialSettings trials;
 };
 

@@ -132,7 +132,8 @@ GAZETRACE_ENUM_NAMES(WorldUp, "up axis", {E::y, "y"}, {E::z, "z"})
 GAZETRACE_ENUM_NAMES(TimeUnit, "time unit", {E::automatic, "auto"}, {E::ns, "ns"}, {E::us, "us"}, {E::ms, "ms"},
                      {E::s, "s"})
 GAZETRACE_ENUM_NAMES(PositionUnit, "gaze unit", {E::automatic, "auto"}, {E::fraction, "fraction"}, {E::px, "px"},
-                     {E::mm, "mm"}, {E::cm, "cm"}, {E::deg, "deg"}, {E::unit_vector, "unit-vector"})
+                     {E::mm, "mm"}, {E::cm, "cm"}, {E::deg, "deg"}, {E::unit_vector, "unit-vector"}, {E::norm, "norm"},
+                     {E::height, "height"}, {E::rad, "rad"})
 GAZETRACE_ENUM_NAMES(PositionOrigin, "gaze origin", {E::automatic, "auto"}, {E::top_left, "top-left"},
                      {E::bottom_left, "bottom-left"}, {E::center, "center"})
 GAZETRACE_ENUM_NAMES(GazeInterpolation, "gaze mode", {E::hold, "hold"}, {E::nearest, "nearest"}, {E::linear, "linear"})
@@ -143,12 +144,13 @@ GAZETRACE_ENUM_NAMES(GazeAxes, "gaze axes", {E::automatic, "auto"}, {E::gl, "gl"
 GAZETRACE_ENUM_NAMES(EyeChoice, "eye", {E::automatic, "auto"}, {E::left, "left"}, {E::right, "right"},
                      {E::mean, "mean"}, {E::dominant, "dominant"}, {E::best, "best"})
 GAZETRACE_ENUM_NAMES(GazeFrame, "gaze frame", {E::automatic, "auto"}, {E::head, "head"},
-                     {E::scene_camera, "scene-camera"})
+                     {E::scene_camera, "scene-camera"}, {E::world, "world"})
 GAZETRACE_ENUM_NAMES(Eye, "eye", {E::left, "left"}, {E::right, "right"})
 GAZETRACE_ENUM_NAMES(GazeDevice, "device", {E::desktop, "desktop"}, {E::head_mounted, "head-mounted"})
 GAZETRACE_ENUM_NAMES(TrialSplit, "way to split trials", {E::blocks, "blocks"}, {E::messages, "messages"},
                      {E::table, "table"})
-GAZETRACE_ENUM_NAMES(UnorderedPolicy, "policy for unordered stamps", {E::error, "error"}, {E::sort, "sort"})
+GAZETRACE_ENUM_NAMES(UnorderedPolicy, "policy for unordered stamps", {E::error, "error"}, {E::sort, "sort"},
+                     {E::pairs, "pairs"}, {E::unwrap, "unwrap"})
 GAZETRACE_ENUM_NAMES(DiffuseModel, "diffuse model", {E::burley, "burley"}, {E::lambert, "lambert"}, {E::matte, "matte"})
 GAZETRACE_ENUM_NAMES(LightSampling, "light sampling", {E::mis, "mis"}, {E::light_only, "light"}, {E::bsdf_only, "bsdf"})
 GAZETRACE_ENUM_NAMES(PixelFilter, "pixel filter", {E::box, "box"}, {E::blackman_harris, "blackman-harris"})

@@ -65,7 +65,7 @@ class JobOptions(TypedDict, total=False):
     gaze_time_unit: Value | None
     gaze_unit: Value | None
     gaze_origin: Value | None
-    gaze_sort: bool | None
+    gaze_order: Value | None
     gaze_columns: Value | None
     gaze_axes: Value | None
     gaze_frame: Value | None
@@ -183,7 +183,7 @@ class GazeOptions(TypedDict, total=False):
     gaze_time_unit: Value | None
     gaze_unit: Value | None
     gaze_origin: Value | None
-    gaze_sort: bool | None
+    gaze_order: Value | None
     gaze_columns: Value | None
     gaze_axes: Value | None
     gaze_frame: Value | None
@@ -249,7 +249,7 @@ class MeasureOptions(TypedDict, total=False):
     gaze_time_unit: Value | None
     gaze_unit: Value | None
     gaze_origin: Value | None
-    gaze_sort: bool | None
+    gaze_order: Value | None
     gaze_columns: Value | None
     gaze_axes: Value | None
     gaze_frame: Value | None

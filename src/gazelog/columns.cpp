@@ -15,6 +15,54 @@ namespace {
 
 using RoleNames = std::span<const std::string_view>;
 
+// The eye that a column's name tells: "LGazePos2dx", "left_x", "gaze x right", "ry". Of the words of a name, which a
+// capital letter begins as well, one is L, R, left or right.
+std::optional<Eye> eye_of_name(std::string_view name) {
+  const std::string lower = to_lower(name);
+  if (lower == "lx" || lower == "ly" || lower == "rx" || lower == "ry") {
+    return lower.front() == 'l' ? Eye::left : Eye::right;
+  }
+  const auto is_capital = [](char c) { return c >= 'A' && c <= 'Z'; };
+  const auto is_small = [](char c) { return c >= 'a' && c <= 'z'; };
+  std::string word;
+  std::optional<Eye> eye;
+  const auto end_word = [&] {
+    std::string w = to_lower(word);
+    if (w.size() > 4 && (w.back() == 'x' || w.back() == 'y')) {
+      w.pop_back();  // "Leftx"
+    }
+    eye = w == "l" || w == "left" ? Eye::left : w == "r" || w == "right" ? Eye::right : eye;
+    word.clear();
+  };
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const char c = name[i];
+    const bool begins =
+        is_capital(c) && i > 0 && (is_small(name[i - 1]) || (i + 1 < name.size() && is_small(name[i + 1])));
+    if (begins || !(is_capital(c) || is_small(c))) {
+      end_word();
+    }
+    word += is_capital(c) || is_small(c) ? std::string(1, c) : "";
+  }
+  end_word();
+  return eye;
+}
+
+// In small letters, without what says the eye or the tracker.
+std::string name_without_eye(std::string_view name) {
+  std::string core = letters_and_digits(name);
+  bool says_side = false;
+  for (const std::string_view word : {"left", "right", "eye"}) {
+    if (const std::size_t at = core.find(word); at != std::string::npos) {
+      core.erase(at, word.size());
+      says_side = says_side || word != "eye";
+    }
+  }
+  if (!says_side && core.size() > 1) {
+    core.erase(0, 1);  // "L_GazeX"
+  }
+  return core.starts_with("et") ? core.substr(2) : core;
+}
+
 class Finder {
  public:
   Finder(const DelimitedTable& table, const std::string& place) : table_(table), place_(place) {}
@@ -26,6 +74,20 @@ class Finder {
           table_.check_unique(i);
           return i;
         }
+      }
+    }
+    return std::nullopt;
+  }
+
+  // "left_gaze_x", "ET_GazeLeftx", "GazePointXLeft": a name with the eye in it.
+  [[nodiscard]] OptionalColumn by_role_of_eye(RoleNames names, Eye eye) const {
+    for (std::size_t i = 0; i < table_.headings.size(); ++i) {
+      if (eye_of_name(table_.headings[i].name) != eye) {
+        continue;
+      }
+      const std::string core = name_without_eye(table_.headings[i].name);
+      if (std::find(names.begin(), names.end(), core) != names.end()) {
+        return i;
       }
     }
     return std::nullopt;
@@ -77,18 +139,21 @@ using std::string_view_literals::operator""sv;
 constexpr std::array kTime{"t"sv, "time"sv, "timestamp"sv, "recordingtimestamp"sv, "gazetimestamp"sv};
 constexpr std::array kValidity{"valid"sv, "validity"sv, "isvalid"sv};
 constexpr std::array kConfidence{"confidence"sv, "conf"sv};
-constexpr std::array kPupil{"pupil"sv, "pupilsize"sv, "pupildiameter"sv};
+constexpr std::array kPupil{"pupil"sv, "pupilsize"sv, "pupildiameter"sv, "pupilmeasure1"sv};
 constexpr std::array kEye{"eye"sv, "recordedeye"sv};
-constexpr std::array kDirectionX{"dx"sv, "dirx"sv, "directionx"sv, "gazedirectionx"sv, "gazedirx"sv};
-constexpr std::array kDirectionY{"dy"sv, "diry"sv, "directiony"sv, "gazedirectiony"sv, "gazediry"sv};
-constexpr std::array kDirectionZ{"dz"sv, "dirz"sv, "directionz"sv, "gazedirectionz"sv, "gazedirz"sv};
+constexpr std::array kDirectionX{"dx"sv,       "dirx"sv,         "directionx"sv, "gazedirectionx"sv,
+                                 "gazedirx"sv, "gazeforwardx"sv, "forwardx"sv,   "gazevectorx"sv};
+constexpr std::array kDirectionY{"dy"sv,       "diry"sv,         "directiony"sv, "gazedirectiony"sv,
+                                 "gazediry"sv, "gazeforwardy"sv, "forwardy"sv,   "gazevectory"sv};
+constexpr std::array kDirectionZ{"dz"sv,       "dirz"sv,         "directionz"sv, "gazedirectionz"sv,
+                                 "gazedirz"sv, "gazeforwardz"sv, "forwardz"sv,   "gazevectorz"sv};
 constexpr std::array kOriginX{"ox"sv};
 constexpr std::array kOriginY{"oy"sv};
 constexpr std::array kOriginZ{"oz"sv};
-constexpr std::array kScreenX{"u"sv,        "x"sv,    "gazex"sv, "xcoordinate"sv, "gazepointx"sv,
-                              "gazeposx"sv, "porx"sv, "posx"sv,  "xpos"sv};
-constexpr std::array kScreenY{"v"sv,        "y"sv,    "gazey"sv, "ycoordinate"sv, "gazepointy"sv,
-                              "gazeposy"sv, "pory"sv, "posy"sv,  "ypos"sv};
+constexpr std::array kScreenX{"u"sv,    "x"sv,    "gazex"sv, "xcoordinate"sv, "gazepointx"sv, "gazeposx"sv,
+                              "porx"sv, "posx"sv, "xpos"sv,  "yaw"sv,         "azimuth"sv};
+constexpr std::array kScreenY{"v"sv,    "y"sv,    "gazey"sv, "ycoordinate"sv, "gazepointy"sv, "gazeposy"sv,
+                              "pory"sv, "posy"sv, "ypos"sv,  "pitch"sv,       "elevation"sv};
 
 bool is_declared(const EyeColumns& eye) {
   return !eye.x.empty() || !eye.y.empty();
@@ -110,38 +175,38 @@ GazeSource eye_source(const Finder& find, const EyeColumns& declared, Eye eye) {
   return source;
 }
 
-// The eye that a column's name tells: "LGazePos2dx", "left_x", "gaze x right", "ry". Of the words of a name, which a
-// capital letter begins as well, one is L, R, left or right.
-std::optional<Eye> eye_of_name(std::string_view name) {
-  const std::string lower = to_lower(name);
-  if (lower == "lx" || lower == "ly" || lower == "rx" || lower == "ry") {
-    return lower.front() == 'l' ? Eye::left : Eye::right;
-  }
-  const auto is_capital = [](char c) { return c >= 'A' && c <= 'Z'; };
-  const auto is_small = [](char c) { return c >= 'a' && c <= 'z'; };
-  std::string word;
-  std::optional<Eye> eye;
-  const auto end_word = [&] {
-    const std::string w = to_lower(word);
-    eye = w == "l" || w == "left" ? Eye::left : w == "r" || w == "right" ? Eye::right : eye;
-    word.clear();
-  };
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const char c = name[i];
-    const bool begins =
-        is_capital(c) && i > 0 && (is_small(name[i - 1]) || (i + 1 < name.size() && is_small(name[i + 1])));
-    if (begins || !(is_capital(c) || is_small(c))) {
-      end_word();
-    }
-    word += is_capital(c) || is_small(c) ? std::string(1, c) : "";
-  }
-  end_word();
-  return eye;
-}
-
 Eye eye_of_names(const ColumnHeading& x, const ColumnHeading& y) {
   const std::optional<Eye> eye = eye_of_name(x.name);
   return eye && eye == eye_of_name(y.name) ? *eye : Eye::cyclopean;
+}
+
+// The columns of each eye, where a table names its eyes alone.
+bool plan_eyes(ColumnPlan& plan, const Finder& find, const GazeColumns& declared) {
+  for (const Eye eye : {Eye::left, Eye::right}) {
+    GazeSource source;
+    source.eye = eye;
+    OptionalColumn x = find.by_role_of_eye(kDirectionX, eye);
+    OptionalColumn y = find.by_role_of_eye(kDirectionY, eye);
+    source.z = find.by_role_of_eye(kDirectionZ, eye);
+    const bool is_direction = x && y && source.z;
+    if (!is_direction) {
+      x = find.by_role_of_eye(kScreenX, eye);
+      y = find.by_role_of_eye(kScreenY, eye);
+      source.z = std::nullopt;
+    }
+    const GazeKind kind = is_direction ? GazeKind::direction : GazeKind::screen;
+    if (!x || !y || (!plan.sources.empty() && kind != plan.kind)) {
+      continue;
+    }
+    source.x = *x;
+    source.y = *y;
+    source.validity =
+        declared.validity.empty() ? find.by_role_of_eye(kValidity, eye) : find.optional(declared.validity);
+    source.pupil = declared.pupil.empty() ? find.by_role_of_eye(kPupil, eye) : find.optional(declared.pupil);
+    plan.kind = kind;
+    plan.sources.push_back(source);
+  }
+  return !plan.sources.empty();
 }
 
 void plan_positions(ColumnPlan& plan, const Finder& find, const GazeColumns& declared) {
@@ -155,6 +220,11 @@ void plan_positions(ColumnPlan& plan, const Finder& find, const GazeColumns& dec
     }
   }
   if (by_eye && declared.x.empty()) {
+    return;
+  }
+  const bool is_named = !declared.x.empty() || !declared.y.empty();
+  const bool is_combined = (find.by_role(kScreenX) && find.by_role(kScreenY)) || find.by_role(kDirectionX);
+  if (!is_named && !is_combined && plan_eyes(plan, find, declared)) {
     return;
   }
   GazeSource source;

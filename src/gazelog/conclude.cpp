@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/statistics.hpp"
+#include "gazelog/judge.hpp"
 #include "gazelog/recording_geometry.hpp"
 #include "gazelog/row_samples.hpp"
 #include "gazelog/units.hpp"
@@ -30,26 +31,48 @@ RawRows rows_for_a_guess(const RawGaze& raw, const Conventions& c) {
   return measurable_rows(raw, plain);
 }
 
-void conclude_unit(const RawGaze& raw, const GazeReadOptions& options, Conventions& c) {
-  if (c.unit.value == PositionUnit::automatic) {
-    std::string evidence;
-    c.unit.value = guess_position_unit(rows_for_a_guess(raw, c), evidence);
-    c.unit.evidence = Evidence::statistics;
-    c.warnings.push_back(
-        fmt::format("{}: guessed from its values ({}) that the positions are in {}; state it with `gaze-unit`",
-                    raw.place, evidence, to_string(c.unit.value)));
+// What is known of the display or of the scene camera's picture, before anything is converted.
+DisplayGeometry known_display(const RawGaze& raw, const GazeReadOptions& options) {
+  DisplayGeometry display = completed_geometry(options.display.value_or(DisplayGeometry{}),
+                                               raw.recording_geometry.value_or(DisplayGeometry{}));
+  display = completed_geometry(display, options.fallback_display.value_or(DisplayGeometry{}));
+  if (raw.picture_px) {
+    display.width_px = static_cast<int>(raw.picture_px->x);
+    display.height_px = static_cast<int>(raw.picture_px->y);
   }
+  return display;
+}
+
+void conclude_unit(const RawGaze& raw, const GazeReadOptions& options, Conventions& c) {
   const PositionUnit given = options.columns.position_unit;
+  if (c.unit.value == PositionUnit::automatic && given == PositionUnit::automatic) {
+    UnitReading reading = read_unit(rows_for_a_guess(raw, c), raw, known_display(raw, options));
+    c.unit = {reading.unit, Evidence::statistics, reading.evidence};
+    if (reading.doubt && (reading.doubt->is_open || !(options.accepts_inferred || options.guess_display))) {
+      c.doubts.push_back(*std::move(reading.doubt));
+    }
+  }
   if (given != PositionUnit::automatic && given != c.unit.value) {
-    c.warnings.push_back(fmt::format("{}: positions of {} are in {}; `gaze-unit` {} was given and is used", raw.place,
-                                     raw.format, to_string(c.unit.value), to_string(given)));
+    if (c.unit.value != PositionUnit::automatic) {
+      c.warnings.push_back(fmt::format("{}: positions of {} are in {}; `gaze-unit` {} was given and is used", raw.place,
+                                       raw.format, to_string(c.unit.value), to_string(given)));
+    }
     c.unit = {given, Evidence::option, {}};
-    c.origin.value = given == PositionUnit::deg ? PositionOrigin::center : c.origin.value;
+    c.origin.value = given == PositionUnit::deg || given == PositionUnit::rad ? PositionOrigin::center : c.origin.value;
+  }
+  if (c.unit.value == PositionUnit::rad) {
+    c.unit.value = PositionUnit::deg;
+    c.unit.detail = "radians";
+    c.unit_scale *= kDegPerRad;
   }
 }
 
 void conclude_origin(const RawGaze& raw, const GazeReadOptions& options, Conventions& c) {
   const PositionOrigin given = options.columns.origin;
+  if (c.unit.value == PositionUnit::norm || c.unit.value == PositionUnit::height) {
+    c.origin = {PositionOrigin::center, c.unit.evidence, "of PsychoPy's units"};
+    return;
+  }
   if (given != PositionOrigin::automatic && given != c.origin.value) {
     if (c.origin.value != PositionOrigin::automatic) {
       c.warnings.push_back(fmt::format("{}: positions of {} count from the {}; `gaze-origin` {} was given and is used",
@@ -57,20 +80,10 @@ void conclude_origin(const RawGaze& raw, const GazeReadOptions& options, Convent
     }
     c.origin = {given, Evidence::option, {}};
   }
-  if (c.origin.value != PositionOrigin::automatic) {
-    return;
-  }
-  const bool is_deg = c.unit.value == PositionUnit::deg;
-  c.origin = {is_deg ? PositionOrigin::center : PositionOrigin::top_left, Evidence::statistics, {}};
-  if (is_deg) {
-    return;
-  }
-  const double share_negative = measure_positions(measurable_rows(raw, c)).share_negative;
-  if (share_negative > 0.25) {
-    c.warnings.push_back(
-        fmt::format("{}: {:.0f} % of the positions are negative, counted from the top left: is the origin at the "
-                    "center (`gaze-origin` center)?",
-                    raw.place, 100 * share_negative));
+  if (c.origin.value == PositionOrigin::automatic) {
+    const bool is_deg = c.unit.value == PositionUnit::deg;
+    c.origin = {is_deg ? PositionOrigin::center : PositionOrigin::top_left, Evidence::statistics,
+                is_deg ? "degrees count from straight ahead" : "as usual; no data tell it from the bottom left"};
   }
 }
 
@@ -107,10 +120,6 @@ void guess_display(const RawGaze& raw, Conventions& c) {
   display.width_px = kUsual[best][0];
   display.height_px = kUsual[best][1];
   c.display = {display, Evidence::statistics, "the smallest usual display that holds 98 % of the positions"};
-  c.warnings.push_back(
-      fmt::format("{}: the size of the display is not stated; {}x{} px were guessed from the positions to look at "
-                  "them; give `screen-px` W,H",
-                  raw.place, display.width_px, display.height_px));
 }
 
 void conclude_display(const RawGaze& raw, const GazeReadOptions& options, Conventions& c) {
@@ -170,7 +179,7 @@ Conventions conclude_conventions(const RawGaze& raw, const GazeReadOptions& opti
   c.swap_xy = options.swap_xy;
   c.flip_x = options.flip_x;
   c.flip_y = options.flip_y;
-  c.missing_value = options.missing_value;
+  c.missing_value = options.missing_value ? options.missing_value : raw.declared.missing_value;
   c.zero_is_missing = options.zero_is_missing;
   c.unordered = options.unordered;
   c.eye = options.eye;
@@ -179,6 +188,7 @@ Conventions conclude_conventions(const RawGaze& raw, const GazeReadOptions& opti
   if (c.form != PlaceForm::position) {
     conclude_axes(raw, options, c);
     conclude_handedness(raw, options, c);
+    c.doubts = judge_reading(raw, c, {});
     return c;
   }
   conclude_unit(raw, options, c);
@@ -189,6 +199,11 @@ Conventions conclude_conventions(const RawGaze& raw, const GazeReadOptions& opti
       (c.degrees_are_directions || options.frame == GazeFrame::head || (options.guess_display && no_display));
   if (!c.degrees_are_directions) {
     conclude_display(raw, options, c);
+  }
+  DisplayGeometry display = known_display(raw, options);
+  display = completed_geometry(display, c.display ? c.display->value : DisplayGeometry{});
+  for (ReadingDoubt& doubt : judge_reading(raw, c, display)) {
+    c.doubts.push_back(std::move(doubt));
   }
   return c;
 }

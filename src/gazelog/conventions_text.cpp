@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "gazelog/units.hpp"
+#include "gazetrace/gaze_read.hpp"
 
 namespace gazetrace {
 namespace {
@@ -68,7 +69,32 @@ std::string_view name_of(Conventions::TakenEye eye) {
   return "combined";
 }
 
+std::string_view evidence_in_words(Evidence evidence) {
+  switch (evidence) {
+    case Evidence::option:
+      return "stated by you";
+    case Evidence::sidecar:
+      return "stated in the sidecar";
+    case Evidence::header:
+      return "stated in the file";
+    case Evidence::format:
+      return "certain by the format";
+    case Evidence::statistics:
+      return "inferred";
+  }
+  return "inferred";
+}
+
 }  // namespace
+
+std::string decisions_in_words(const std::vector<GazeFact>& facts) {
+  std::string text;
+  for (const GazeFact& fact : facts) {
+    text += fmt::format("  {:<17} {} ({}{}{})\n", fact.what, fact.value, evidence_in_words(fact.evidence),
+                        fact.detail.empty() ? "" : ": ", fact.detail);
+  }
+  return text;
+}
 
 std::vector<GazeFact> facts_in_words(const RawGaze& raw, const Conventions& conventions) {
   Facts facts;

@@ -10,8 +10,8 @@
 
 #include "gazelog/conventions_text.hpp"
 #include "gazelog/eyes.hpp"
-#include "gazelog/row_order.hpp"
 #include "gazelog/row_samples.hpp"
+#include "gazelog/stamps.hpp"
 #include "gazetrace/gaze_raw.hpp"
 
 namespace gazetrace {
@@ -73,22 +73,13 @@ void finish_directions(const RawGaze& raw, const Conventions& c, GazeLog& log) {
     origins.right_mm = turned(origins.right_mm, c.axes.value, mirror_x);
   }
   std::size_t not_unit = 0;
-  std::size_t backwards = 0;
-  std::size_t usable = 0;
   for (std::size_t i = 0; i < log.samples.size(); ++i) {
     const GazeSample& sample = log.samples[i];
     not_unit += !std::isnan(sample.direction.z) && std::abs(length(vector_of(raw.rows[i], c)) - 1.0) > 0.01 ? 1 : 0;
-    usable += is_usable(sample.validity) ? 1 : 0;
-    backwards += is_usable(sample.validity) && sample.direction.z > 0 ? 1 : 0;
   }
-  if (not_unit > 0) {
+  if (not_unit > 0 && !raw.are_points) {
     log.warnings.push_back(fmt::format("{}: {} of {} directions were not of unit length; normalized", log.source,
                                        not_unit, log.samples.size()));
-  }
-  if (backwards * 2 > usable) {
-    log.warnings.push_back(
-        fmt::format("{}: {} of {} directions point backwards (+z): forward is -z here, with +x right and +y up",
-                    log.source, backwards, log.samples.size()));
   }
 }
 

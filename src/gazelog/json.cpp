@@ -143,7 +143,8 @@ std::vector<double> JsonLeaves::numbers(std::string_view path) const {
   std::vector<double> values;
   for (;;) {
     const JsonLeaf* const leaf = find(fmt::format("{}.{}", path, values.size()));
-    if (leaf == nullptr || !(leaf->is_number || leaf->text == "null")) {
+    // Some programs write numbers as texts.
+    if (leaf == nullptr || !(leaf->is_number || leaf->text == "null" || number_from(leaf->text))) {
       return values;
     }
     values.push_back(number_from(leaf->text).value_or(std::numeric_limits<double>::quiet_NaN()));

@@ -8,11 +8,16 @@
 #include "core/text.hpp"
 #include "gazelog/decimal_comma.hpp"
 #include "gazelog/event_table.hpp"
+#include "gazelog/foreign_file.hpp"
 #include "gazelog/gaze_format.hpp"
+#include "gazelog/judge.hpp"
 #include "gazelog/log_file.hpp"
 #include "gazelog/mending.hpp"
 #include "gazelog/read_support.hpp"
+#include "gazelog/recording_geometry.hpp"
 #include "gazelog/recordings.hpp"
+#include "gazelog/stamps.hpp"
+#include "gazelog/vector_cells.hpp"
 #include "gazetrace/gaze_raw.hpp"
 
 namespace gazetrace {
@@ -141,11 +146,12 @@ RawGaze read_opened(GazeFile& file, const std::string& path, const GazeReadOptio
   if (file.text.empty() || trim(head_of(file)).empty()) {
     throw Error(ErrorKind::input, path, "is empty", "give a gaze log with a header and at least one sample");
   }
+  split_vector_cells(file);
   if (format == nullptr) {
     const std::vector<Guess> guesses = sniff(file);
-    if (guesses.empty()) {
-      throw Error(ErrorKind::input, path, "is not a gaze log of a known format",
-                  "give a CSV or TSV with a header, or name the format with `gaze-format`");
+    constexpr double kClaimed = 0.8;
+    if (guesses.empty() || guesses.front().confidence < kClaimed) {
+      refuse_foreign_file(file);
     }
     format = guesses.front().format;
     confidence = guesses.front().confidence;
@@ -162,7 +168,9 @@ RawGaze read_opened(GazeFile& file, const std::string& path, const GazeReadOptio
   raw.format = format->name;
   raw.format_confidence = confidence;
   note_damages(file, raw);
+  mend_stamps(raw, options.unordered);
   choose_recording(raw, options.recording);
+  settle_display(raw);
   if (!options.events_file.empty()) {
     take_events(options.events_file, raw);
   }
@@ -284,7 +292,7 @@ GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options) {
       file = {};  // no hint can be needed: the text is given back before samples are made of the rows
     }
     if (needs_a_choice(raw)) {
-      throw Error(ErrorKind::input, path, "holds " + recordings_in_words(raw.recordings),
+      throw Error(ErrorKind::input, path, words_of_restart(raw) + "holds " + recordings_in_words(raw.recordings),
                   "say which of them is meant with `gaze-recording`, such as `gaze-recording` 1");
     }
     const Conventions conventions = conclude_conventions(raw, options);
@@ -292,7 +300,16 @@ GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options) {
       const RawFault& fault = raw.faults.front();
       throw Error(ErrorKind::input, fault.place, fault.problem, fault.remedy);
     }
-    return interpret(raw, conventions);
+    for (const ReadingDoubt& doubt : conventions.doubts) {
+      if (doubt.refuses) {
+        refuse_doubt(raw, doubt, options);
+      }
+    }
+    GazeLog log = interpret(raw, conventions);
+    for (const ReadingDoubt& doubt : conventions.doubts) {
+      log.warnings.push_back(fmt::format("{}: {} ({})", path, doubt.what, doubt.evidence));
+    }
+    return log;
   });
 }
 

@@ -9,6 +9,7 @@
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
 #include "gazelog/recordings.hpp"
+#include "gazelog/table_evidence.hpp"
 #include "gazelog/units.hpp"
 
 namespace gazetrace {
@@ -28,6 +29,7 @@ class RowReader {
         recordings_(table, columns.recording,
                     {"participant", "participant name", "participant id", "subject", "subject id", "session",
                      "session id", "recording", "recording name", "recording id"}),
+        others_(file, table, plan),
         rows_(file, table, std::max(plan.needed_cells(), recordings_.needed_cells())),
         time_(time) {
     for (const GazeSource& source : plan.sources) {
@@ -38,6 +40,9 @@ class RowReader {
 
   void read_all(RawGaze& raw) {
     while (rows_.next()) {
+      if (others_.is_other(rows_) || is_message(raw)) {
+        continue;
+      }
       rows_.check_length();
       if (recordings_.note(rows_, raw)) {
         last_frame_.clear();
@@ -61,11 +66,27 @@ class RowReader {
   }
 
   [[nodiscard]] const ValidityReader& validity() const { return validity_; }
+  [[nodiscard]] const ValidityTally& tally() const { return tally_; }
   std::size_t repeated_headers = 0;
   std::size_t repeated_frames = 0;
   std::size_t zero_pairs = 0;  // rows at exactly (0, 0) that state no validity
 
+  [[nodiscard]] const OtherSensors& others() const { return others_; }
+  std::size_t messages = 0;
+
  private:
+  // Rows of a time and a text are messages, which loggers write between those of gaze.
+  bool is_message(RawGaze& raw) {
+    const std::string_view text = rows_.is_short() ? text_of_message(rows_, plan_.time) : "";
+    std::int64_t t_ns = 0;
+    if (text.empty() || scaled_integer(rows_.cell(plan_.time), time_.exponent, t_ns) != NumberStatus::ok) {
+      return false;
+    }
+    add_message(raw, t_ns, std::string(text), rows_.line());
+    ++messages;
+    return true;
+  }
+
   bool repeats_frame() {
     if (!plan_.frame) {
       return false;
@@ -110,6 +131,9 @@ class RowReader {
       sample.validity = GazeValidity::blink;
     }
     read_position(source, kind, sample);
+    if (source.validity && columns_.valid_mask == 0) {
+      tally_.add(rows_.cell(*source.validity), sample);
+    }
     read_origin(source, sample.eye, origins);
     return sample;
   }
@@ -164,6 +188,8 @@ class RowReader {
   ValidityStyle style_;
   ValidityReader validity_;
   RecordingColumns recordings_;
+  OtherSensors others_;
+  ValidityTally tally_;
   TableRows rows_;
   TimeScale time_;
   bool has_origins_ = false;
@@ -218,6 +244,10 @@ TimeScale time_scale(const GazeFile& file, const DelimitedTable& table, const Co
   return scale;
 }
 
+std::string place_of_header(const RawGaze& raw, const DelimitedTable& table) {
+  return fmt::format("{}:{}", raw.source, table.header_line);
+}
+
 void add_row_warnings(RawGaze& raw, const RowReader& rows, const ColumnPlan& plan, const DelimitedTable& table) {
   const std::size_t count = raw.rows.size();
   if (rows.repeated_headers > 0) {
@@ -233,7 +263,19 @@ void add_row_warnings(RawGaze& raw, const RowReader& rows, const ColumnPlan& pla
         fmt::format("{}: {} of {} positions are exactly (0, 0): missing values written as zero? Name a validity column",
                     raw.source, rows.zero_pairs, count));
   }
+  if (rows.messages > 0) {
+    add_note(raw, "messages", std::to_string(rows.messages), Evidence::header, "rows of a time and a text");
+  }
+  if (rows.others().left_out > 0) {
+    add_note(raw, "rows left out", std::to_string(rows.others().left_out), Evidence::header,
+             fmt::format("of other sensors, by column '{}'", rows.others().name()));
+  }
   const OptionalColumn& validity = plan.sources.front().validity;
+  if (const std::string good = validity ? rows.tally().reversed() : ""; !good.empty()) {
+    const std::string setting = fmt::format("`gaze-valid-values` {}", good);
+    const std::string problem = rows.tally().in_words(table.headings[*validity].text);
+    raw.faults.push_back({"validity", place_of_header(raw, table), problem, "give " + setting, setting, problem});
+  }
   const auto is_good = [](const RawSample& s) { return s.validity != GazeValidity::lost; };
   if (validity && std::none_of(raw.rows.begin(), raw.rows.end(), is_good)) {
     raw.warnings.push_back(
@@ -260,7 +302,10 @@ void declare_positions(RawGaze& raw, const ColumnPlan& plan, const GazeFile& fil
   if (raw.kind == GazeKind::direction) {
     const bool is_default = columns.axes == GazeAxes::automatic;
     declare_directions(raw, {names, Evidence::header}, is_default ? GazeAxes::gl : columns.axes,
-                       is_default ? Evidence::format : declared, place);
+                       !is_default                     ? declared
+                       : style == ValidityStyle::names ? Evidence::format
+                                                       : Evidence::statistics,
+                       place);
     raw.declared.unit.evidence = Evidence::header;
     return;
   }
@@ -300,9 +345,11 @@ RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, con
                 "say by number which is which: `gaze-time-column` 1 `gaze-x-column` 2 `gaze-y-column` 3");
   }
   const GazetracePreamble preamble = read_preamble(file, table);
-  const ColumnPlan plan = plan_columns(table, columns, place);
+  const GazeColumns with_z = style == ValidityStyle::any ? with_z_beside(file, table, columns) : columns;
+  const ColumnPlan plan = plan_columns(table, with_z, place);
   RawGaze raw;
   raw.source = file.path;
+  find_sum_of_eyes(file, table, plan, raw);
   raw.kind = plan.kind;
   raw.clock = preamble.clock;
   raw.recording_geometry = preamble.geometry;

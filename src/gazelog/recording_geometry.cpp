@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 #include <vector>
@@ -103,6 +104,26 @@ void place_eye(const RawGaze& raw, Conventions& c, const GazeReadOptions& option
 }
 
 }  // namespace
+
+void settle_display(RawGaze& raw) {
+  for (const CornerFromRow& corner : raw.corners) {
+    if (corner.size_px[0] == 0 || !raw.recording_geometry || corner.first_row >= raw.rows.size()) {
+      continue;
+    }
+    DisplayGeometry& g = *raw.recording_geometry;
+    const bool is_other = corner.size_px != std::array<int, 2>{g.width_px, g.height_px};
+    if (is_other && corner.first_row > 0) {
+      const std::string problem = fmt::format("the display's size changes from {}x{} to {}x{} px", g.width_px,
+                                              g.height_px, corner.size_px[0], corner.size_px[1]);
+      raw.faults.push_back({"display-changes", fmt::format("{}:{}", raw.source, raw.rows[corner.first_row].row),
+                            problem, "read one block at a time with `gaze-recording`, such as `gaze-recording` 1",
+                            "`gaze-recording` 1", fmt::format("{}, line {}", problem, raw.rows[corner.first_row].row)});
+      return;
+    }
+    g.width_px = corner.size_px[0];
+    g.height_px = corner.size_px[1];
+  }
+}
 
 DisplayGeometry completed_geometry(DisplayGeometry stated, const DisplayGeometry& by) {
   if (stated.width_px <= 0 || stated.height_px <= 0) {

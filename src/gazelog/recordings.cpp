@@ -107,7 +107,7 @@ void leave_only(RawGaze& raw, std::size_t chosen) {
   auto corner = raw.corners.begin();
   for (std::size_t i = 0; i < raw.rows.size(); ++i) {
     for (; corner != raw.corners.end() && corner->first_row <= i; ++corner) {
-      corners.push_back({kept.size(), corner->corner});
+      corners.push_back({kept.size(), corner->corner, corner->size_px});
     }
     const RawSample row = raw.rows[i];
     if (recording_of(row.row) == chosen) {
@@ -115,6 +115,13 @@ void leave_only(RawGaze& raw, std::size_t chosen) {
     }
   }
   raw.rows = std::move(kept);
+  const bool size_changes = std::any_of(raw.corners.begin(), raw.corners.end(), [&](const CornerFromRow& c) {
+    return raw.recording_geometry && c.size_px[0] > 0 && c.size_px[0] != raw.recording_geometry->width_px;
+  });
+  if (size_changes && chosen < raw.pixels_per_degree_of_blocks.size() &&
+      raw.pixels_per_degree_of_blocks[chosen].x > 0) {
+    raw.pixels_per_degree = raw.pixels_per_degree_of_blocks[chosen];
+  }
   raw.corners = std::move(corners);
   // What is measured before a block holds for it as well, since all blocks are of one session.
   const bool is_block = raw.recordings[chosen].is_block;

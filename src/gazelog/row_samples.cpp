@@ -101,8 +101,8 @@ Vec2d corner_of(const RawGaze& raw, const Conventions& conventions, std::size_t 
 }
 
 RawRows measurable_rows(const RawGaze& raw, const Conventions& conventions) {
-  // Of a long log some of the rows tell as much, and a copy of all of them would be as large as the log.
-  constexpr std::size_t kAllUpTo = 2'000'000;
+  // Of a long log some of the rows tell as much.
+  constexpr std::size_t kAllUpTo = 200'000;
   std::size_t stride = raw.rows.size() / kAllUpTo + 1;
   while (stride > 1 && (stride % 2 == 0 || stride % 3 == 0)) {
     ++stride;  // or it would meet the same eye of two or three each time
@@ -165,6 +165,13 @@ ToFractions::ToFractions(const Conventions& c, const std::string& place)
     throw Error(ErrorKind::usage, place,
                 fmt::format("positions in degrees cannot count from the {}", to_string(origin_)),
                 "degrees count from straight ahead: `gaze-origin` center");
+  }
+  if (unit_ == PositionUnit::norm || unit_ == PositionUnit::height) {
+    const bool is_norm = unit_ == PositionUnit::norm;
+    const Vec2d px = is_norm ? Vec2d{1, 1} : display_size(PositionUnit::px, display, place);
+    size_ = is_norm ? Vec2d{2, 2} : Vec2d{px.x / px.y, 1};
+    origin_ = PositionOrigin::center;
+    return;
   }
   // Centred fractions count half the display: -1..1.
   size_ = unit_ != PositionUnit::fraction     ? display_size(unit_, display, place)

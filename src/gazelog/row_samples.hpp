@@ -16,7 +16,7 @@ bool is_missing_marker(double coordinate);
 // The file's x and y of the display's top left corner for the row of that index.
 Vec2d corner_of(const RawGaze& raw, const Conventions& conventions, std::size_t row);
 
-// The rows of a log of positions (of more than two millions every n-th) with x and y in `conventions.unit`: without the
+// The rows of a log of positions (of more than 200 000 every n-th) with x and y in `conventions.unit`: without the
 // marks of missing values, counted from the display's corner, and with the axes in their order. Guesses are made from
 // these.
 RawRows measurable_rows(const RawGaze& raw, const Conventions& conventions);

@@ -15,7 +15,7 @@
 namespace gazetrace {
 
 std::optional<PositionUnit> position_unit_from(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, PositionUnit>, 20> kSpellings{{
+  static constexpr std::array<std::pair<std::string_view, PositionUnit>, 23> kSpellings{{
       {"1", PositionUnit::fraction},
       {"norm", PositionUnit::fraction},
       {"normalized", PositionUnit::fraction},
@@ -34,6 +34,9 @@ std::optional<PositionUnit> position_unit_from(std::string_view text) {
       {"degree of visual angle", PositionUnit::deg},
       {"degrees of visual angle", PositionUnit::deg},
       {"\xC2\xB0", PositionUnit::deg},
+      {"rad", PositionUnit::rad},
+      {"radian", PositionUnit::rad},
+      {"radians", PositionUnit::rad},
       {"unit", PositionUnit::unit_vector},
       {"unit vector", PositionUnit::unit_vector},
   }};
@@ -66,6 +69,12 @@ std::string_view to_string(PositionUnit unit) {
       return "deg";
     case PositionUnit::unit_vector:
       return "unit-vector";
+    case PositionUnit::norm:
+      return "norm";
+    case PositionUnit::height:
+      return "height";
+    case PositionUnit::rad:
+      return "rad";
   }
   return "auto";
 }
@@ -156,43 +165,6 @@ std::optional<int> guess_time_exponent(const std::vector<double>& raw_times) {
     return 3;
   }
   return step > 4e5 ? std::optional(0) : std::nullopt;
-}
-
-PositionStatistics measure_positions(const RawRows& samples) {
-  PositionStatistics s;
-  std::size_t normalized = 0;
-  std::size_t small = 0;
-  std::size_t negative = 0;
-  for (const RawSample sample : samples) {
-    if (!is_usable(sample.validity)) {
-      continue;
-    }
-    ++s.count;
-    s.x = {std::min(s.x.low, sample.at.x), std::max(s.x.high, sample.at.x)};
-    s.y = {std::min(s.y.low, sample.at.y), std::max(s.y.high, sample.at.y)};
-    normalized += sample.at.x >= -0.2 && sample.at.x <= 1.2 && sample.at.y >= -0.2 && sample.at.y <= 1.2 ? 1 : 0;
-    small += std::abs(sample.at.x) < 90 && std::abs(sample.at.y) < 90 ? 1 : 0;
-    negative += sample.at.x < 0 || sample.at.y < 0 ? 1 : 0;
-  }
-  const auto share = [&](std::size_t n) {
-    return s.count > 0 ? static_cast<double>(n) / static_cast<double>(s.count) : 0;
-  };
-  s.share_normalized = share(normalized);
-  s.share_small = share(small);
-  s.share_negative = share(negative);
-  return s;
-}
-
-PositionUnit guess_position_unit(const RawRows& samples, std::string& evidence) {
-  const PositionStatistics s = measure_positions(samples);
-  evidence = s.count == 0 ? "no usable value"
-                          : fmt::format("x {:.4g} to {:.4g}, y {:.4g} to {:.4g}", s.x.low, s.x.high, s.y.low, s.y.high);
-  if (s.count == 0 || s.share_normalized >= 0.95) {
-    return PositionUnit::fraction;
-  }
-  const auto has_both_signs = [](const PositionStatistics::Range& range) { return range.low < 0 && range.high > 0; };
-  const bool both_signs = has_both_signs(s.x) || has_both_signs(s.y);
-  return s.share_small >= 0.95 && both_signs ? PositionUnit::deg : PositionUnit::px;
 }
 
 }  // namespace gazetrace

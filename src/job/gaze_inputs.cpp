@@ -26,31 +26,6 @@ GazeLog fixed_gaze(const Vec2d& at) {
   return log;
 }
 
-// Pixels that a log calls fractions would leave every frame to the periphery, without a word. Half of the samples
-// decide, for there may be marks of missing values among them; looking beside the screen is no mistake.
-void warn_of_pixels_as_fractions(GazeLog& log) {
-  constexpr double kFarScreens = 5;
-  if (log.kind != GazeKind::screen || log.conventions.unit.value != PositionUnit::fraction) {
-    return;
-  }
-  std::size_t usable = 0;
-  std::size_t far = 0;
-  Vec2d reach;
-  for (const GazeSample& sample : log.samples) {
-    if (is_usable(sample.validity)) {
-      ++usable;
-      far += std::max(std::fabs(sample.u), std::fabs(sample.v)) >= kFarScreens ? 1 : 0;
-      reach = {std::max(reach.x, std::fabs(sample.u)), std::max(reach.y, std::fabs(sample.v))};
-    }
-  }
-  if (far > usable / 2) {
-    log.warnings.push_back(
-        fmt::format("{}: u and v are stated as fractions of the screen, but reach {:.4g} and {:.4g}, which look like "
-                    "pixels; give `gaze-unit` px",
-                    log.source, reach.x, reach.y));
-  }
-}
-
 // `screen` is the screen on which the pictures are viewed; it describes the recording only where nothing else does.
 GazeLog read_job_gaze(const JobSettings& job) {
   GazeReadOptions options = read_options(job.gaze, {});
@@ -60,6 +35,22 @@ GazeLog read_job_gaze(const JobSettings& job) {
     options.display = known_screen(job.recording_screen, "`recording-screen`");
   }
   return chosen_trial(load_gaze_log(job.gaze.path, options), job.gaze.trials);
+}
+
+// Size and distance that are given for a log of pixels alone are those of the recording, and of the pictures as well:
+// who states them states the own laboratory.
+void take_own_laboratory(GazeLog& log, const ScreenSettings& screen) {
+  const std::optional<DisplayGeometry> given = screen_geometry(screen);
+  auto& stated = log.recording_geometry;
+  if (log.kind != GazeKind::screen || !given || !screen.name.empty() || !stated || stated->width_px <= 0 ||
+      stated->width_cm > 0 || stated->distance_cm > 0) {
+    return;
+  }
+  const bool has_its_pixels =
+      given->width_px <= 0 || (given->width_px == stated->width_px && given->height_px == stated->height_px);
+  if (has_its_pixels && given->width_cm > 0 && given->height_cm > 0 && given->distance_cm > 0) {
+    stated = completed_geometry(*stated, *given);
+  }
 }
 
 constexpr const char* kAnchor = "`gaze-anchor`";
@@ -155,7 +146,6 @@ GazeReadOptions read_options(const GazeFileSettings& gaze, const ScreenSettings&
   options.min_confidence = gaze.min_confidence.value_or(options.min_confidence);
   options.display = screen_geometry(screen);
   options.eye_cm = screen.eye_cm;
-  options.unordered = gaze.sort ? UnorderedPolicy::sort : UnorderedPolicy::error;
   return options;
 }
 
@@ -176,11 +166,13 @@ std::optional<GazeLog> gaze_of_job(const JobSettings& job, std::int64_t& taken_o
     return std::nullopt;
   }
   GazeLog log = read_job_gaze(job);
-  warn_of_pixels_as_fractions(log);
   if (!job.keep_ids) {
     LogWithoutTimesOfDay hidden = without_times_of_day(std::move(log));
     log = std::move(hidden.log);
     taken_off_ns = hidden.taken_off_ns.value_or(0);
+  }
+  if (!job.gaze_transfer && job.recording_screen.empty()) {
+    take_own_laboratory(log, job.screen);
   }
   complete_recording_geometry(log, job.screen);
   return log;

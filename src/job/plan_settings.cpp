@@ -44,6 +44,11 @@ PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_
   settings.width_px = job.size.width;
   settings.height_px = job.size.height;
   settings.display = screen_geometry(job.screen);
+  const bool has_pixels = log != nullptr && log->kind == GazeKind::screen && log->recording_geometry;
+  if (settings.display && settings.display->width_px <= 0 && has_pixels) {
+    settings.display->width_px = log->recording_geometry->width_px;
+    settings.display->height_px = log->recording_geometry->height_px;
+  }
   if (settings.display) {
     decisions.emplace_back("screen", job.screen.name.empty() ? "as given" : job.screen.name);
   } else if (log != nullptr && log->recording_geometry && log->kind == GazeKind::screen) {

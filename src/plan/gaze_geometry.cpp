@@ -84,7 +84,8 @@ std::optional<DisplayGeometry> transfer(const GazeLog& log, const DisplayGeometr
   if (!how) {
     throw Error(ErrorKind::input, log.source, what,
                 fmt::format("choose with `gaze-transfer`: fraction keeps positions on the display (angles near its "
-                            "center change by a factor of {:.2f}), angle keeps angles",
+                            "center change by a factor of {:.2f}), angle keeps angles; or, where the log states its "
+                            "display wrongly, say with `recording-screen` which it was",
                             gain));
   }
   if (*how == GazeTransfer::fraction) {

@@ -146,12 +146,16 @@ std::string gaze_ages_text(const GazeAges& ages) {
   if (ages.frames == 0) {
     return unknown;
   }
-  return fmt::format(
-      "{:.1f} ms in the median, mean {:.1f}, {:.1f} to {:.1f}, 95 % up to {:.1f}, over {} frames; {:.1f} ms less "
-      "when a frame appears, as much more when it goes{}{}{}",
-      ms(ages.median_ns), ms(ages.mean_ns), ms(ages.min_ns), ms(ages.max_ns), ms(ages.p95_ns), ages.frames,
-      ms(ages.half_frame_ns), unknown.empty() ? "" : "; ", unknown,
-      ages.without > 0 ? fmt::format("; {} frames without gaze are left out", ages.without) : "");
+  const bool are_alike = ms(ages.max_ns) - ms(ages.min_ns) < 0.1;
+  const std::string figures =
+      are_alike
+          ? fmt::format("{:.1f} ms in all of {} frames", ms(ages.median_ns), ages.frames)
+          : fmt::format("{:.1f} ms in the median, mean {:.1f}, {:.1f} to {:.1f}, 95 % up to {:.1f}, over {} frames",
+                        ms(ages.median_ns), ms(ages.mean_ns), ms(ages.min_ns), ms(ages.max_ns), ms(ages.p95_ns),
+                        ages.frames);
+  return fmt::format("{}; {:.1f} ms less when a frame appears, as much more when it goes{}{}{}", figures,
+                     ms(ages.half_frame_ns), unknown.empty() ? "" : "; ", unknown,
+                     ages.without > 0 ? fmt::format("; {} frames without gaze are left out", ages.without) : "");
 }
 
 std::string plan_as_table(const FramePlan& plan) {

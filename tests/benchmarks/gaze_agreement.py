@@ -267,7 +267,7 @@ def peers_part(program, samples, table):
         log = str(pathlib.Path(__file__).parents[2] / name) if name.startswith("gazelogs/") else str(samples / name)
         with tempfile.TemporaryDirectory() as folder:
             path = f"{folder}/gaze.csv"
-            result = subprocess.run([program, "gaze", "convert", log, "-o", path, "--keep-ids", *options], capture_output=True, text=True, check=False)
+            result = subprocess.run([program, "gaze", "import", log, "-o", path, "--keep-ids", *options], capture_output=True, text=True, check=False)
             if result.returncode != 0:
                 refused.append((name, result.stderr.strip().splitlines()[-1].split(": ", 3)[-1][:150]))
                 continue

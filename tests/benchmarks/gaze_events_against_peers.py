@@ -142,7 +142,7 @@ def main():
         log = str(arguments.samples / name)
         with tempfile.TemporaryDirectory() as folder:
             path = f"{folder}/gaze.csv"
-            subprocess.run([arguments.gazetrace, "gaze", "convert", log, "-o", path], check=True, capture_output=True)
+            subprocess.run([arguments.gazetrace, "gaze", "import", log, "-o", path], check=True, capture_output=True)
             t, azimuth, elevation = read_csv(path)
         found = {method: gazetrace(arguments.gazetrace, log, method) for method in ("ivt", "idt", "adaptive", "log")}
         if not any(movement == "fixation" for movement, _, _ in found["log"]):

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How long `gazetrace gaze inspect` takes for an hour of binocular gaze at 1000 Hz, 3.6 million samples, and how much
 memory at most. Makes the logs itself: EyeLink ASC, gazetrace CSV with a row for each eye, the same with a row for the
-mean as well (as `gaze convert` writes it), and a TSV of one's own.
+mean as well (as `gaze import` writes it), and a TSV of one's own.
 
   tests/benchmarks/gaze_inspect.py build/dev/bin/gazetrace [--seconds 3600] [--folder build/gaze_hour]
 """

@@ -213,7 +213,7 @@ def gaze_jobs(program, book):
         out.unlink(missing_ok=True)
         inspected = run(program, ["gaze", "inspect", str(path)], [], check=False)
         book.text(f"inspect {name}", inspected.stdout + inspected.stderr)
-        converted = run(program, ["gaze", "convert", str(path), "-o", str(out)], [], check=False)
+        converted = run(program, ["gaze", "import", str(path), "-o", str(out)], [], check=False)
         book.text(f"convert {name}", (out.read_text() if out.exists() else "nothing") , exact=True)
         book.text(f"convert says {name}", converted.stderr)
 

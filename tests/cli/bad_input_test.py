@@ -106,7 +106,7 @@ class BadGaze(harness.CliTest):
         self.write(name, content)
         self.assert_refused(["render", "box.gltf", *OUT, "--gaze", name, *more], words)
         if not more:
-            self.assert_refused(["gaze", "convert", name, "-o", "converted.csv"], words)
+            self.assert_refused(["gaze", "import", name, "-o", "converted.csv"], words)
 
     def test_missing_file(self):
         self.assert_refused(["render", "box.gltf", *OUT, "--gaze", "gone.csv"], ["gone.csv"])
@@ -117,11 +117,11 @@ class BadGaze(harness.CliTest):
 
     def test_unordered_stamps(self):
         rows = ["0,0.5,0.5,ok,left", "20,0.5,0.5,ok,left", "10,0.5,0.5,ok,left"]
-        self.refuse(harness.gaze_csv(rows), ["log.csv:8", "--gaze-sort"])
+        self.refuse(harness.gaze_csv(rows), ["log.csv:8", "--gaze-order sort"])
 
     def test_duplicated_stamps(self):
         rows = ["0,0.5,0.5,ok,left", "10,0.5,0.5,ok,left", "10,0.6,0.5,ok,left"]
-        self.refuse(harness.gaze_csv(rows), ["log.csv:8", "--gaze-sort"])
+        self.refuse(harness.gaze_csv(rows), ["log.csv:8", "2 of 3 rows"])
 
     def test_empty_log(self):
         self.refuse(harness.gaze_csv([]), ["log.csv", "no sample"])
@@ -198,7 +198,7 @@ class BadOutputs(harness.CliTest):
     def test_converting_over_a_file(self):
         self.write("log.csv", harness.moving_gaze())
         self.write("out.csv", "precious")
-        self.assert_refused(["gaze", "convert", "log.csv", "-o", "out.csv"], ["out.csv", "exists"])
+        self.assert_refused(["gaze", "import", "log.csv", "-o", "out.csv"], ["out.csv", "exists"])
 
     def test_names(self):
         def refuse(output, words):
@@ -235,7 +235,7 @@ class BadOutputs(harness.CliTest):
 
     def test_converting_into_what_cannot_be_a_folder(self):
         self.write("log.csv", harness.moving_gaze())
-        self.assert_refused(["gaze", "convert", "log.csv", "-o", "log.csv/out.csv"], ["log.csv", "cannot be made"])
+        self.assert_refused(["gaze", "import", "log.csv", "-o", "log.csv/out.csv"], ["log.csv", "cannot be made"])
 
     def test_unknown_view(self):
         arguments = ["render", "box.gltf", "-o", "f.png", "--size", "64x36"]

@@ -27,11 +27,11 @@ class BidsFolder(harness.CliTest):
         self.write("gaze.csv", log(["cyclopean"]))
 
     def convert(self, source, *arguments):
-        return self.run_ok("gaze", "convert", source, "-o", f"b/{NAME}", *arguments)
+        return self.run_ok("gaze", "import", source, "-o", f"b/{NAME}", *arguments)
 
     def refused(self, words, source, *arguments):
         before = self.contents()
-        self.assert_refused(["gaze", "convert", source, "-o", f"b/{NAME}", *arguments], words)
+        self.assert_refused(["gaze", "import", source, "-o", f"b/{NAME}", *arguments], words)
         self.assertEqual(self.contents(), before)
 
     def contents(self):
@@ -62,12 +62,12 @@ class BidsFolder(harness.CliTest):
         name = "sub-1_task-t_recording-eye1_physio"
         for ending in (".json", ".tsv.gz"):
             (self.folder / "b" / (name.replace("eye1", "again") + ending)).write_bytes((self.folder / "b" / (name + ending)).read_bytes())
-        warnings = self.run_ok("gaze", "convert", f"b/{name}.tsv.gz", "-o", "out.csv").stderr
+        warnings = self.run_ok("gaze", "import", f"b/{name}.tsv.gz", "-o", "out.csv").stderr
         self.assertIn("recording-again_physio.tsv.gz: is a recording of the left eye as well, and is not read", warnings)
 
     def test_conversions_into_one_file_at_once_leave_a_whole_one(self):
         for _ in range(2):
-            running = [subprocess.Popen([harness.PROGRAM, "gaze", "convert", source, "-o", "c.csv", "--overwrite"], cwd=self.folder,
+            running = [subprocess.Popen([harness.PROGRAM, "gaze", "import", source, "-o", "c.csv", "--overwrite"], cwd=self.folder,
                                         stderr=subprocess.DEVNULL) for source in ("both.csv", "gaze.csv") * 2]
             self.assertEqual([process.wait() for process in running], [0] * len(running))
             whole = (self.folder / "c.csv").read_bytes()
@@ -80,7 +80,7 @@ class BidsFolder(harness.CliTest):
             self.write(f"long_{name}.csv", "# gazetrace-gaze 1\n# display_px 1000 500\nt[ns],u[1],v[1],valid,eye\n" + "\n".join(rows) + "\n")
         whole = [self.fresh(f"long_{name}.csv") for name in ("both", "gaze")]
         for _ in range(4):
-            running = [subprocess.Popen([harness.PROGRAM, "gaze", "convert", source, "-o", f"b/{NAME}", "--overwrite"], cwd=self.folder,
+            running = [subprocess.Popen([harness.PROGRAM, "gaze", "import", source, "-o", f"b/{NAME}", "--overwrite"], cwd=self.folder,
                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for source in ("long_both.csv", "long_gaze.csv") * 2]
             self.assertEqual([process.wait() for process in running], [0] * len(running))
             self.assertIn(self.contents(), whole)
@@ -92,7 +92,7 @@ class BidsFolder(harness.CliTest):
         folder = os.open(self.folder / "b", os.O_RDONLY)
         try:
             fcntl.flock(folder, fcntl.LOCK_EX)
-            waiting = subprocess.Popen([harness.PROGRAM, "gaze", "convert", "gaze.csv", "-o", f"b/{NAME}", "--overwrite"], cwd=self.folder,
+            waiting = subprocess.Popen([harness.PROGRAM, "gaze", "import", "gaze.csv", "-o", f"b/{NAME}", "--overwrite"], cwd=self.folder,
                                        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
             self.assertRaises(subprocess.TimeoutExpired, waiting.wait, 2)  # long enough to have come to the lock
             for path, content in left.items():
@@ -105,11 +105,11 @@ class BidsFolder(harness.CliTest):
 
     def written_in(self, folder, source):
         (self.folder / folder).mkdir(exist_ok=True)
-        self.run_ok("gaze", "convert", source, "-o", f"{folder}/{NAME}")
+        self.run_ok("gaze", "import", source, "-o", f"{folder}/{NAME}")
         return list((self.folder / folder).iterdir())
 
     def converted(self, source):
-        self.run_ok("gaze", "convert", source, "-o", "alone.csv", "--overwrite")
+        self.run_ok("gaze", "import", source, "-o", "alone.csv", "--overwrite")
         return (self.folder / "alone.csv").read_bytes()
 
     def test_recordings_of_others_stay(self):

@@ -39,7 +39,7 @@ class BidsValidator(harness.CliTest):
             "Name": "Gaze", "BIDSVersion": "1.11.0", "DatasetType": "raw", "License": "CC0", "Authors": ["A. Author", "B. Author"],
             "HEDVersion": "8.2.0", "GeneratedBy": [{"Name": "gazetrace"}], "SourceDatasets": [{"URL": "file:."}]}))
         (root / "README.md").write_text("Gaze that was recorded for a test of the writer. " * 10)
-        self.run_ok("gaze", "convert", *convert, "-o", root / "sub-01/func/sub-01_task-view_physio.tsv.gz")
+        self.run_ok("gaze", "import", *convert, "-o", root / "sub-01/func/sub-01_task-view_physio.tsv.gz")
         return root
 
     def sets(self):
@@ -76,8 +76,8 @@ class BidsValidator(harness.CliTest):
         self.assertIn("diameter", of_eyes["pupil_size"]["Description"])
         self.assertEqual(of_eyes["pupil_size"]["Units"], "mm")
         # It is read again as it was: the unit of the pupil, the calibration, and what the tracker states.
-        self.run_ok("gaze", "convert", func / "sub-01_task-view_recording-eye1_physio.tsv.gz", "-o", "again.csv", "--keep-ids")
-        self.run_ok("gaze", "convert", "eyelink.asc", "-o", "first.csv", "--keep-ids")
+        self.run_ok("gaze", "import", func / "sub-01_task-view_recording-eye1_physio.tsv.gz", "-o", "again.csv", "--keep-ids")
+        self.run_ok("gaze", "import", "eyelink.asc", "-o", "first.csv", "--keep-ids")
         kinds = ("# calibration", "# event fixation", "t[ns]")
         again, first = ([line for line in (self.folder / name).read_text().splitlines() if line.startswith(kinds)] for name in ("again.csv", "first.csv"))
         self.assertEqual(again, first)
@@ -89,8 +89,8 @@ class BidsValidator(harness.CliTest):
         self.assertNotIn("DISPLAY_COORDS", table)
         self.assertIn(b"DISPLAY_COORDS", gzip.decompress((func / "sub-01_task-view_recording-eye1_physioevents.tsv.gz").read_bytes()))
         self.assertEqual(json.loads((func / "sub-01_task-view_recording-eye1_physio.json").read_text())["pupil_size"]["Units"], "arbitrary")
-        self.run_ok("gaze", "convert", func / "sub-01_task-view_recording-eye1_physio.tsv.gz", "-o", "bare.csv")
-        self.run_ok("gaze", "convert", "bare.asc", "-o", "own.csv")
+        self.run_ok("gaze", "import", func / "sub-01_task-view_recording-eye1_physio.tsv.gz", "-o", "bare.csv")
+        self.run_ok("gaze", "import", "bare.asc", "-o", "own.csv")
         headers = [next(line for line in (self.folder / name).read_text().splitlines() if line.startswith("t[ns]")) for name in ("bare.csv", "own.csv")]
         self.assertEqual(*headers)
 

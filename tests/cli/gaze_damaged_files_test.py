@@ -18,13 +18,13 @@ class DamagedFiles(harness.CliTest):
         return [f["code"] for f in self.inspect(name, *arguments)["findings"] if f["kind"] != "note"]
 
     def convert(self, name, *arguments):
-        result = self.run_ok("gaze", "convert", name, "-o", "out.csv", "--overwrite", *arguments)
+        result = self.run_ok("gaze", "import", name, "-o", "out.csv", "--overwrite", *arguments)
         return [line for line in (self.folder / "out.csv").read_text().splitlines() if line[:1] != "#"], result.stderr
 
     def test_stamps_over_the_whole_range_are_refused(self):
         self.write("ages.csv", "t[ns],u[1],v[1]\n-9223372036854775808,0.5,0.5\n0,0.5,0.5\n9223372036854775807,0.5,0.5\n")
         self.assert_refused(["gaze", "inspect", "ages.csv"], ["more than a hundred years", "--gaze-time-unit"])
-        self.assert_refused(["gaze", "convert", "ages.csv", "-o", "no.csv"], ["more than a hundred years"])
+        self.assert_refused(["gaze", "import", "ages.csv", "-o", "no.csv"], ["more than a hundred years"])
 
     def test_a_file_cut_in_the_middle_of_a_row_is_said_to_be(self):
         self.write("cut.csv", TABLE[:-3])  # 0. where 0.5 was
@@ -94,21 +94,21 @@ class DamagedFiles(harness.CliTest):
 
         more = ["--gaze-time-unit", "ms", "--screen-px", "1920,1080"]
         self.write("tabs.tsv", "time\tx\ty\n" + rows("\t", grouped))
-        self.assert_refused(["gaze", "convert", "tabs.tsv", "-o", "no.csv", *more], ["thousands separators", "column 'time'", "'1,000'"])
+        self.assert_refused(["gaze", "import", "tabs.tsv", "-o", "no.csv", *more], ["thousands separators", "column 'time'", "'1,000'"])
         self.write("quotes.csv", "time,x,y\n" + rows(",", lambda v: f'"{v:,}"'))
-        self.assert_refused(["gaze", "convert", "quotes.csv", "-o", "no.csv", *more], ["thousands separators"])
+        self.assert_refused(["gaze", "import", "quotes.csv", "-o", "no.csv", *more], ["thousands separators"])
         self.write("bare.csv", "time,x,y\n" + rows(",", grouped))
-        self.assert_refused(["gaze", "convert", "bare.csv", "-o", "no.csv", *more], ["group the digits", "without thousands separators"])
+        self.assert_refused(["gaze", "import", "bare.csv", "-o", "no.csv", *more], ["group the digits", "without thousands separators"])
         self.write("point.tsv", "time\tx\ty\n" + "".join(f"{4 * i}\t{1000.5 + i:,.1f}\t540\n" for i in range(20)))
-        self.assert_refused(["gaze", "convert", "point.tsv", "-o", "no.csv", *more], ["thousands separators", "'1,000.5' in column 'x'"])
+        self.assert_refused(["gaze", "import", "point.tsv", "-o", "no.csv", *more], ["thousands separators", "'1,000.5' in column 'x'"])
         for mark in ("'", ".", " ", "\u00a0", "\u2019", "\u202f"):
             def spaced(value):
                 return f"{value:,}".replace(",", mark)
 
             self.write("country.tsv", "time\tx\ty\n" + rows("\t", lambda v: spaced(v) + ",5"))
-            self.assert_refused(["gaze", "convert", "country.tsv", "-o", "no.csv", *more], ["thousands separators", "'1" + mark + "000,5'"])
+            self.assert_refused(["gaze", "import", "country.tsv", "-o", "no.csv", *more], ["thousands separators", "'1" + mark + "000,5'"])
             self.write("country.tsv", "time\tx\ty\n" + rows("\t", spaced))
-            self.assert_refused(["gaze", "convert", "country.tsv", "-o", "no.csv", *more], ["thousands separators", "'1" + mark + "000'"])
+            self.assert_refused(["gaze", "import", "country.tsv", "-o", "no.csv", *more], ["thousands separators", "'1" + mark + "000'"])
         # Points before three digits are fractions as well, with marks of missing values between them.
         marks = ("-1", "0", "9999", "-9999")
         self.write("points.tsv", "time\tx\ty\n" + "".join(

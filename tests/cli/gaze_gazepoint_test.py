@@ -56,13 +56,13 @@ class Gazepoint(harness.CliTest):
         self.write("mm.csv", log(FIXATIONS))
         self.write("px.csv", log(FIXATIONS, pupils="A,B,C,D"))
         for name, unit, both, left in (("mm.csv", "mm", 3.6, 3.5), ("px.csv", "px", 16.0, 15.5)):
-            self.run_ok("gaze", "convert", name, "-o", "out.csv", "--overwrite")
+            self.run_ok("gaze", "import", name, "-o", "out.csv", "--overwrite")
             lines = [line for line in (self.folder / "out.csv").read_text().splitlines() if line[:1] != "#"]
             self.assertIn(f"pupil[{unit}]", lines[0])
             rows = list(csv.DictReader(lines))
             of = {row["eye"]: float(row[f"pupil[{unit}]"]) for row in rows[3:6]}
             self.assertEqual(of, {"cyclopean": both, "left": left, "right": 2 * both - left})
-        self.run_ok("gaze", "convert", "mm.csv", "-o", "out.csv", "--overwrite")
+        self.run_ok("gaze", "import", "mm.csv", "-o", "out.csv", "--overwrite")
         lines = [line for line in (self.folder / "out.csv").read_text().splitlines() if line[:1] != "#"]
         first = {row["eye"]: row["pupil[mm]"] for row in list(csv.DictReader(lines))[:3]}
         self.assertEqual(first, {"cyclopean": "3.7", "left": "", "right": "3.7"})  # the left one was not measured
@@ -73,7 +73,7 @@ class Gazepoint(harness.CliTest):
         self.write("all.csv", log(FIXATIONS))
         report = json.loads(self.run_ok("gaze", "inspect", "all.csv", "--json").stdout)
         self.assertEqual(report["events"]["aoi"], 2)
-        self.run_ok("gaze", "convert", "all.csv", "-o", "out.csv")
+        self.run_ok("gaze", "import", "all.csv", "-o", "out.csv")
         self.assertEqual((self.folder / "out.csv").read_text().count(" AOI 1\n"), 2)
 
 

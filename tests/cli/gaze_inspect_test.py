@@ -78,7 +78,7 @@ class Doctor(harness.CliTest):
 
     def rows(self, *arguments):
         """Converted: (time, eye) to validity and coordinates."""
-        self.run_ok("gaze", "convert", *arguments, "-o", "converted.csv", "--overwrite")
+        self.run_ok("gaze", "import", *arguments, "-o", "converted.csv", "--overwrite")
         lines = [line for line in (self.folder / "converted.csv").read_text().splitlines() if line[:1] != "#"]
         rows = {}
         for row in csv.DictReader(lines):
@@ -303,7 +303,7 @@ class Doctor(harness.CliTest):
             ("plain-csv/gaze-toy-example.csv", breaking.begins_with_digit, ["--screen-px", "1280,1024"]),
             ("pico-neo3-pro/boxing_VR.csv", lambda line: line.startswith("SE"), []),
         ):
-            self.assert_mended(name, breaking.shuffled(self.sample(name), row), "unordered", "--gaze-sort", common=common, kinds=["fault"])
+            self.assert_mended(name, breaking.shuffled(self.sample(name), row), "unordered", "--gaze-order sort", common=common, kinds=["fault"])
 
     def test_repeated_block(self):
         for name, row, common in (
@@ -314,7 +314,7 @@ class Doctor(harness.CliTest):
             ("pico-neo3-pro/boxing_VR.csv", lambda line: line.startswith("SE"), []),
         ):
             broken = breaking.repeated(self.sample(name), row)
-            self.assert_mended(name, broken, "repeated-rows", "--gaze-sort", common=common, kinds=["fault"])
+            self.assert_mended(name, broken, "repeated-rows", "--gaze-order sort", common=common, kinds=["fault"])
 
     def test_a_clock_that_starts_again_is_not_to_be_sorted(self):
         rows = "".join(f"{t},{0.2 + 0.0001 * t + 0.1 * part},0.5\n" for part in (0, 1) for t in range(part, 4000, 2))

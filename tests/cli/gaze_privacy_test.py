@@ -55,9 +55,9 @@ class Privacy(harness.CliTest):
                    "".join(f"{1000 + 4 * i}\t  200.0\t  300.0\t  900.0\t...\n" for i in range(60)) +
                    "MSG\t1100 Ada Lovelace answers\nEND\t1240 \tSAMPLES\tEVENTS\tRES\t  35.00\t  35.00\n")
         for output in ("talk.csv", "sub-01_physio.tsv.gz"):
-            warnings = self.run_ok("gaze", "convert", "talk.asc", "-o", output, "--overwrite", *more).stderr
+            warnings = self.run_ok("gaze", "import", "talk.asc", "-o", output, "--overwrite", *more).stderr
         self.write("log.csv", LOG)
-        self.run_ok("gaze", "convert", "log.csv", "-o", "clock.csv", "--overwrite", *more)
+        self.run_ok("gaze", "import", "log.csv", "-o", "clock.csv", "--overwrite", *more)
         names = ["talk.csv", "clock.csv", *(name for name in self.files() if name.startswith("sub-01"))]
         self.assertGreater(len(names), 4)
         data = [(self.folder / name).read_bytes() for name in names]

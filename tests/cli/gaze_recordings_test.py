@@ -62,7 +62,7 @@ class Recordings(harness.CliTest):
         return [finding["code"] for finding in report["findings"]]
 
     def converted(self, *arguments):
-        self.run_ok("gaze", "convert", *arguments, "-o", "out.csv", "--overwrite")
+        self.run_ok("gaze", "import", *arguments, "-o", "out.csv", "--overwrite")
         lines = [line for line in (self.folder / "out.csv").read_text().splitlines() if line[:1] != "#"]
         return list(csv.DictReader(lines))
 
@@ -77,7 +77,7 @@ class Recordings(harness.CliTest):
             self.assertIn("several-recordings", self.codes(report))
             self.assertEqual((report["gaps"]["count"], report["order"]["backward_steps"]), (0, 0), name)
             self.assertIn(f"the file holds {count} recordings", self.run_ok("gaze", "inspect", name, *more).stdout)
-            self.assert_refused(["gaze", "convert", name, "-o", "no.csv", *more], [f"{count} recordings", "--gaze-recording"])
+            self.assert_refused(["gaze", "import", name, "-o", "no.csv", *more], [f"{count} recordings", "--gaze-recording"])
             self.assertEqual(len(self.converted(name, *more, "--gaze-recording", str(count))), rows)
             chosen = self.inspect(name, *more, "--gaze-recording", str(count))
             self.assertEqual((chosen["recording"], chosen["samples"]), (count, rows))
@@ -90,9 +90,9 @@ class Recordings(harness.CliTest):
         kept = self.inspect("lab.tsv", "--keep-ids")
         self.assertEqual([r["name"] for r in kept["recordings"]], ["P1/Rec 1", "P1/Rec 2", "P2/Rec 1"])
         self.assertEqual(float(self.converted("lab.tsv", "--gaze-recording", "P2/Rec 1")[0]["u[1]"]), 902 / 1920)
-        self.assert_refused(["gaze", "convert", "lab.tsv", "-o", "no.csv", "--gaze-recording", "P3"], ["no recording 'P3'", "1 (200 rows"])
-        self.assert_refused(["gaze", "convert", "lab.tsv", "-o", "no.csv", "--gaze-recording", "4"], ["no recording '4'"])
-        for command in (["gaze", "convert", "lab.tsv", "-o", "no.csv"], ["gaze", "events", "lab.tsv"],
+        self.assert_refused(["gaze", "import", "lab.tsv", "-o", "no.csv", "--gaze-recording", "P3"], ["no recording 'P3'", "1 (200 rows"])
+        self.assert_refused(["gaze", "import", "lab.tsv", "-o", "no.csv", "--gaze-recording", "4"], ["no recording '4'"])
+        for command in (["gaze", "import", "lab.tsv", "-o", "no.csv"], ["gaze", "events", "lab.tsv"],
                         ["plan", "--gaze", "lab.tsv", *VIEW, *SCREEN]):
             self.assertNotIn("P2", self.run_program(*command).stderr)
 
@@ -135,7 +135,7 @@ class Recordings(harness.CliTest):
         self.write("sessions.asc", eyelink([10_000, 20_000, 5_000, 15_000]))
         report = self.inspect("sessions.asc")
         self.assertEqual([(r["kind"], r["rows"]) for r in report["recordings"]], [("recording", 500)] * 2)
-        self.assert_refused(["gaze", "convert", "sessions.asc", "-o", "no.csv"], ["2 recordings", "--gaze-recording"])
+        self.assert_refused(["gaze", "import", "sessions.asc", "-o", "no.csv"], ["2 recordings", "--gaze-recording"])
         self.assertEqual(self.converted("sessions.asc", "--gaze-recording", "2")[0]["t[ns]"], "5000000000")
 
     def test_three_recordings_of_four_blocks_are_planned_trial_by_trial(self):

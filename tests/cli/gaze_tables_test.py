@@ -54,7 +54,7 @@ class Tables(harness.CliTest):
         rows = "".join(f"{4 * i},{0.4 + 0.001 * (i % 9):.3f},0.5\n" for i in range(100))
         for x, y, eye in (("LGazePos2dx", "LGazePos2dy", "left"), ("right_x", "right_y", "right"), ("gaze x", "gaze y", "cyclopean")):
             self.write("own.csv", f"time[ms],{x},{y}\n" + rows)
-            self.run_ok("gaze", "convert", "own.csv", "-o", "out.csv", "--overwrite", "--gaze-x-column", x, "--gaze-y-column", y, "--gaze-unit", "fraction")
+            self.run_ok("gaze", "import", "own.csv", "-o", "out.csv", "--overwrite", "--gaze-x-column", x, "--gaze-y-column", y, "--gaze-unit", "fraction")
             lines = [line for line in (self.folder / "out.csv").read_text().splitlines() if line[:1] != "#"]
             self.assertEqual({row["eye"] for row in csv.DictReader(lines)}, {eye})
 

@@ -61,8 +61,8 @@ class GazeLogs(harness.CliTest):
         accused = [(f["code"], f["flag"]) for f in report["findings"] if f["kind"] != "note"]
         self.assertEqual(accused, [("media", "--gaze-time-column TIMETICK")])
         self.assertEqual((report["samples"], report["first_ns"], report["last_ns"]), (60, 0, 59 * 16_000_000))
-        self.assert_refused(["gaze", "convert", "media.csv", "-o", "out.csv"], ["media.csv:32", "another medium", "--gaze-time-column TIMETICK,"])
-        self.run_ok("gaze", "convert", "media.csv", "-o", "out.csv", "--gaze-time-column", "TIMETICK")
+        self.assert_refused(["gaze", "import", "media.csv", "-o", "out.csv"], ["media.csv:32", "another medium", "--gaze-time-column TIMETICK,"])
+        self.run_ok("gaze", "import", "media.csv", "-o", "out.csv", "--gaze-time-column", "TIMETICK")
         mended = self.summary("media.csv", "--gaze-time-column", "TIMETICK")
         self.assertEqual([f for f in mended["findings"] if f["kind"] != "note"], [])
         # Without ticks there is nothing to go on by.

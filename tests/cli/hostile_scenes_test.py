@@ -114,7 +114,7 @@ class Confined(Farm):
         self.write("both.csv", "# gazetrace-gaze 1\n# display_px 1000 500\nt[ns],u[1],v[1],valid,eye\n" + eyes)
         (self.folder / "b").mkdir()
         (self.folder / "b/dataset_description.json").write_text("{}")
-        self.run_ok("gaze", "convert", "both.csv", "-o", "b/sub-1_task-t_physio.tsv.gz")
+        self.run_ok("gaze", "import", "both.csv", "-o", "b/sub-1_task-t_physio.tsv.gz")
         recording, other = sorted(path.name for path in (self.folder / "b").glob("*recording-eye[12]_physio.tsv.gz"))
         plan = ["plan", "glide.gltf", "--gaze", f"b/{recording}", "--frames", "1", "--screen-px", "64,36", "--screen-cm", "64,36",
                 "--screen-distance-cm", "60", "--gaze-transfer", "fraction"]

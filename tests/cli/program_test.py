@@ -127,7 +127,7 @@ class Talk(harness.CliTest):
 
     def test_every_option_has_help(self):
         for command in (["render", "--help-all"], ["plan", "--help-all"], ["render", "--help"], ["gaze", "inspect", "--help"],
-                        ["gaze", "convert", "--help"]):
+                        ["gaze", "import", "--help"]):
             lines = self.run_ok(*command).stdout.splitlines()
             options = [i for i, line in enumerate(lines) if re.match(r"  -", line)]
             self.assertGreater(len(options), 10)
@@ -193,8 +193,8 @@ class Talk(harness.CliTest):
         self.run_ok("compare", "a/b/f.exr", "a/b/f.exr", "--metrics", "mse", "--csv", "c/d/scores.csv", "--json", "e/scores.json",
                     "--maps", "f/maps")
         self.run_ok("gaze", "synth", "-o", "g/h/gaze.csv", "--truth", "i/truth.tsv", "--duration", "1s")
-        self.run_ok("gaze", "convert", "log.csv", "-o", "j/k/copy.csv")
-        self.run_ok("gaze", "convert", "log.csv", "-o", "l/m/sub-01_task-view_physio.tsv.gz")
+        self.run_ok("gaze", "import", "log.csv", "-o", "j/k/copy.csv")
+        self.run_ok("gaze", "import", "log.csv", "-o", "l/m/sub-01_task-view_physio.tsv.gz")
         self.run_ok("gaze", "events", "log.csv", "-o", "n/events.tsv")
         self.run_ok("gaze", "inspect", "log.csv", "--save-columns", "p/map.json")
         self.run_ok("gaze", "measure", "log.csv", "--tables", "o/tables")
@@ -216,7 +216,7 @@ class Talk(harness.CliTest):
                     ["compare", "f.exr", "f.exr", "--metrics", "mse"], ["gaze", "inspect", "log.csv"],
                     ["gaze", "events", "log.csv"],
                     ["gaze", "measure", "log.csv"],
-                    ["gaze", "convert", "log.csv", "-o", "c.csv", "--overwrite"],
+                    ["gaze", "import", "log.csv", "-o", "c.csv", "--overwrite"],
                     ["gaze", "synth", "-o", "s.csv", "--duration", "1s", "--overwrite"]]
         for command in commands:
             with self.subTest(command=command):
@@ -329,7 +329,7 @@ class Talk(harness.CliTest):
     def test_gaze_summary_and_conversion(self):
         self.write("log.csv", harness.moving_gaze())
         summary = json.loads(self.run_ok("gaze", "inspect", "log.csv", "--json").stdout)
-        self.run_ok("gaze", "convert", "log.csv", "-o", "copy.csv")
+        self.run_ok("gaze", "import", "log.csv", "-o", "copy.csv")
         self.assertEqual((summary["samples"], summary["first_ns"], summary["last_ns"]), (100, 0, 990_000_000))
         self.assertEqual(summary["median_rate_hz"], 100.0)
         copy = json.loads(self.run_ok("gaze", "inspect", "copy.csv", "--json").stdout)

@@ -23,6 +23,15 @@ Command add_gaze_command(CLI::App& app, const Invocation& invocation) {
 #define GAZETRACE_EXTERNAL(name, help) add_external_command(app, #name, help);
 #include "cli/gaze_commands.def"
 #undef GAZETRACE_GAZE_COMMAND
+  // The former name of `import`, understood for one version.
+  CLI::App* const former = app.add_subcommand("convert", "")->group("");
+  former->fallthrough();
+  const Command import = add_gaze_import_command(*former, invocation);
+  (*commands)["convert"] = {[import] {
+                              print_warnings({"'gaze convert' is now 'gaze import'"});
+                              return import.run();
+                            },
+                            import.read_config};
   app.require_subcommand(1);
   const auto chosen = [commands, &app]() -> const Command& {
     return commands->at(app.get_subcommands().front()->get_name());

@@ -75,6 +75,16 @@ EyeEvents events_of_log(const GazeLog& log) {
   std::map<std::size_t, EyeEvent::Stated> stated;  // by the first sample
   const Eye eye = eye_of_events(log);
   for (const GazeEvent& event : log.events) {
+    if (event.type == GazeEventType::blink && event.eye == eye) {
+      // The saccade around a blink is blink as well, and the tracker's own times are those of the blink.
+      auto i = static_cast<std::size_t>(std::lower_bound(t_ns.begin(), t_ns.end(), event.begin_ns) - t_ns.begin());
+      while (i > 0 && i < events.labels.size() && events.labels[i] == EyeMovement::blink &&
+             events.labels[i - 1] == EyeMovement::blink) {
+        --i;
+      }
+      stated.emplace(i, what_is_stated(event));
+      continue;
+    }
     const bool moves = event.type == GazeEventType::fixation || event.type == GazeEventType::saccade;
     if (!moves || event.eye != eye) {
       continue;

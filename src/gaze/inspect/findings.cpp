@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 
 #include "gaze/inspect/inspect.hpp"
 #include "gaze/inspect/recurring_place.hpp"
-#include "gazelog/row_order.hpp"
+#include "gazelog/recordings.hpp"
 #include "gazelog/row_samples.hpp"
+#include "gazelog/stamps.hpp"
 #include "gazelog/units.hpp"
 
 namespace gazetrace {
@@ -47,8 +49,11 @@ class Doctor {
   void examine() {
     faults_of_reading();
     time_unit();
-    const bool unit_is_wrong = position_unit();
-    zeros();
+    bursts();
+    const bool unit_is_wrong = doubts_of_reading();
+    if (!has_finding({"validity"})) {
+      zeros();
+    }
     recurring_place();
     mark_in_one_axis();
     if (!examine_axes(log_, unit_is_wrong, report_)) {
@@ -98,10 +103,11 @@ class Doctor {
     }
     if (whole_->is_first_of_several) {
       add(FindingKind::fault, "several-recordings",
-          fmt::format("the file holds {} recordings, and this is the first of them; nothing but an inspection reads it "
-                      "until one is chosen",
-                      log_.recordings.size()),
-          "the columns or lines that begin a recording", "`gaze-recording` 1");
+          fmt::format(
+              "{}the file holds {}, and this is the first of them; nothing but an inspection reads it until one "
+              "is chosen",
+              words_of_restart(whole_->raw), recordings_in_words(log_.recordings)),
+          "the columns or lines that begin a recording, or stamps that begin again", "`gaze-recording` 1");
     }
     for (const std::string& damage : whole_->raw.damages) {
       add(FindingKind::fault, "damaged", damage, "the bytes of the file");
@@ -126,25 +132,56 @@ class Doctor {
                                     : fmt::format("line {}: {}", order.first_duplicate_row, duplicate_problem(order));
     const std::string seen = fmt::format("{} of {} rows go back in time, {} stand at a time that is there already",
                                          order.backward_steps, order.rows, order.duplicates);
-    constexpr const char* kSetting = "`gaze-sort`";
+    const std::string setting = loses_much(order) ? "" : "`gaze-order` sort";
     if (order.backward_steps * 50 > order.rows) {
-      add(FindingKind::fault, "unordered", "the rows are not in the order of time: " + problem, seen, kSetting);
+      add(FindingKind::fault, "unordered", "the rows are not in the order of time: " + problem, seen, setting);
     } else if (repeats) {
       add(FindingKind::fault, "repeated-rows",
           fmt::format("{} rows are repeated, the first in line {}", order.duplicates, order.first_duplicate_row),
-          fmt::format("{}; {} of these have the same position, too", seen, order.identical_duplicates), kSetting);
+          fmt::format("{}; {} of these have the same position, too", seen, order.identical_duplicates), setting);
     } else if (order.duplicates > 0 && order.backward_steps == 0) {
       add(FindingKind::fault, "duplicates",
           fmt::format("{} rows stand at the time of another row with another position: {}", order.duplicates, problem),
-          seen, kSetting);
-    } else if (order.longest_backward_ns > 1'000'000'000) {
-      add(FindingKind::fault, "clock-restarts",
-          fmt::format("the clock starts again {} {}, the first time in line {}", order.backward_steps,
-                      order.backward_steps == 1 ? "time" : "times", order.first_backward_row),
-          seen + "; sorting would mix the parts: give each a file of its own");
+          setting.empty() ? fmt::format("{}; dropping them would keep {} of {} rows: export again with finer stamps",
+                                        seen, order.rows - order.duplicates, order.rows)
+                          : seen,
+          setting);
     } else {
-      add(FindingKind::fault, "unordered", "some rows are not in the order of time: " + problem, seen, kSetting);
+      add(FindingKind::fault, "unordered", "some rows are not in the order of time: " + problem, seen, setting);
     }
+  }
+
+  // Stamps that were taken when a buffer was written: runs of steps that are far shorter than the others.
+  void bursts() {
+    const double step_ns = report_.timing.median_rate_hz > 0 ? 1e9 / report_.timing.median_rate_hz : 0;
+    constexpr std::size_t kShortestRun = 4;
+    std::size_t runs = 0;
+    std::size_t rows = 0;
+    std::size_t run = 0;
+    std::int64_t first_row = 0;
+    for (std::size_t i = 1; i <= log_.samples.size(); ++i) {
+      const bool is_short = i < log_.samples.size() &&
+                            static_cast<double>(log_.samples[i].t_ns - log_.samples[i - 1].t_ns) < 0.25 * step_ns;
+      if (!is_short && run >= kShortestRun) {
+        first_row = runs++ == 0 ? log_.samples[i - run - 1].row : first_row;
+        rows += run;
+      }
+      run = is_short ? run + 1 : 0;
+    }
+    if (runs == 0 || (runs == 1 && rows * 200 < log_.samples.size())) {
+      return;
+    }
+    const double seconds = static_cast<double>(report_.span_ns) * 1e-9;
+    add(FindingKind::suspicion, "bursts",
+        fmt::format(
+            "{} rows stand in {} burst{} of far shorter steps, the first from line {} on: stamps of writing, not "
+            "of measuring",
+            rows, runs, runs == 1 ? "" : "s", first_row),
+        fmt::format("{} rows in {:.3f} s are {:.1f} Hz, by the median step {:.1f} Hz; use the tracker's own clock "
+                    "(`gaze-time-column`)",
+                    log_.samples.size(), seconds,
+                    static_cast<double>(log_.samples.size() - 1) / std::max(seconds, 1e-9),
+                    report_.timing.median_rate_hz));
   }
 
   // The unit of stamps whose exponent differs by `shift` powers of ten, as an option; empty where there is none.
@@ -196,20 +233,21 @@ class Doctor {
     }
   }
 
-  bool position_unit() {
+  // What the judge of readings says, whom every command asks.
+  bool doubts_of_reading() {
     if (whole_ == nullptr) {
       return false;
     }
-    DisplayGeometry display = completed_geometry(options_.display.value_or(DisplayGeometry{}),
-                                                 whole_->conventions.recording_geometry.value_or(DisplayGeometry{}));
-    const Vec2d size = picture_px();
-    display.width_px = static_cast<int>(size.x);
-    display.height_px = static_cast<int>(size.y);
-    std::optional<GazeFinding> doubt = doubt_position_unit(*whole_, display);
-    if (doubt) {
-      report_.findings.push_back(*std::move(doubt));
+    for (const ReadingDoubt& doubt : whole_->conventions.doubts) {
+      add(FindingKind::suspicion, doubt.code, doubt.what, doubt.evidence, doubt.setting);
+      report_.findings.back().is_open = doubt.is_open;
     }
-    return doubt.has_value();
+    return has_finding({"position-unit", "origin", "beside-the-display"});
+  }
+  [[nodiscard]] bool has_finding(std::initializer_list<std::string_view> codes) const {
+    return std::any_of(report_.findings.begin(), report_.findings.end(), [&](const GazeFinding& finding) {
+      return std::find(codes.begin(), codes.end(), finding.code) != codes.end();
+    });
   }
 
   // The size of the display or of the scene camera's picture; it is a guess where the log was inspected with a guessed
@@ -325,8 +363,9 @@ class Doctor {
   // Positions that exceed the display's height but never its width suggest exchanged axes.
   void swapped_by_extent() {
     const Vec2d size = picture_px();
+    // What a format defines is not doubted because the eye rests below the screen.
     if (log_.kind != GazeKind::screen || log_.conventions.unit.value != PositionUnit::px || !(size.x > 1.2 * size.y) ||
-        usable_.size() < 50) {
+        usable_.size() < 50 || whole_ == nullptr || !whole_->raw.is_own_table) {
       return;
     }
     std::size_t beside = 0;
@@ -377,10 +416,12 @@ class Doctor {
           "the log's own validity");
     }
     const std::size_t beside = loss.by_validity[static_cast<std::size_t>(GazeValidity::off_screen)];
-    if (share(beside) > 0.2) {
-      add(FindingKind::note, "off-screen",
-          fmt::format("{:.1f} % of the samples lie beside the display", 100 * share(beside)),
-          "positions outside 0..1 of the display");
+    if (share(beside) > 0.2 && !has_finding({"origin", "beside-the-display"})) {
+      add(share(beside) > 0.5 ? FindingKind::suspicion : FindingKind::note, "off-screen",
+          fmt::format("{:.1f} % of the samples lie beside the display, most of them {} it", 100 * share(beside),
+                      side_of_most()),
+          "positions outside 0..1 of the display: did the viewer look there, and is this the display of the "
+          "recording?");
     }
     const bool are_marks = std::any_of(report_.findings.begin(), report_.findings.end(), [](const GazeFinding& f) {
       return f.code == "zero-missing" || f.code == "missing-value";
@@ -422,6 +463,19 @@ class Doctor {
     }
   }
 
+  // Where most of what is beside the display lies.
+  [[nodiscard]] std::string_view side_of_most() const {
+    std::array<std::size_t, 4> count{};
+    for (const GazeSample* const s : usable_) {
+      count[0] += s->u < 0 ? 1 : 0;
+      count[1] += s->u > 1 ? 1 : 0;
+      count[2] += s->v < 0 ? 1 : 0;
+      count[3] += s->v > 1 ? 1 : 0;
+    }
+    static constexpr std::array<std::string_view, 4> kSides{"left of", "right of", "above", "below"};
+    return kSides[static_cast<std::size_t>(std::max_element(count.begin(), count.end()) - count.begin())];
+  }
+
   // A log that begins before the eye is found, or goes on after it was lost for good.
   void lost_ends() {
     constexpr double kLongNs = 1e9;
@@ -461,26 +515,39 @@ class Doctor {
                          : fmt::format("; the direction of {} could not be tested, see there how to decide it", names);
   }
 
+  // Follows from the worst line: an open question, a fault or a suspicion, a note that nothing good can be said beside.
   void verdict() {
     std::size_t faults = 0;
     std::size_t helpless = 0;
+    std::string questions;
+    std::string notes;
     for (const GazeFinding& finding : report_.findings) {
       if (finding.kind == FindingKind::note) {
+        const bool counts = finding.code == "off-screen" || finding.code == "lost" || finding.code == "rate" ||
+                            finding.code == "frozen";
+        notes += counts ? fmt::format("{}{}", notes.empty() ? "" : "; ", finding.what) : "";
         continue;
       }
       ++faults;
-      helpless += finding.setting.empty() ? 1 : 0;
-      if (!finding.setting.empty() &&
+      const bool has_alternatives = finding.setting.find(" or ") != std::string::npos;
+      if (finding.is_open) {
+        questions += fmt::format("{}{}: give {}", questions.empty() ? "" : "; ", finding.what, finding.setting);
+      } else {
+        helpless += finding.setting.empty() || has_alternatives ? 1 : 0;
+      }
+      if (!finding.setting.empty() && !has_alternatives &&
           std::find(report_.settings.begin(), report_.settings.end(), finding.setting) == report_.settings.end()) {
         report_.settings.push_back(finding.setting);
       }
     }
     if (faults == 0) {
-      report_.verdict = "nothing suspicious was found" + untested_axes();
+      report_.verdict = (notes.empty() ? "nothing suspicious was found" : "mind this: " + notes) + untested_axes();
+    } else if (!questions.empty()) {
+      report_.verdict = "undecided, and refused until it is said: " + questions;
     } else if (report_.settings.empty()) {
       report_.verdict =
-          "suspicious, and no option mends it: read above what each suspicion is from, then export or copy the file "
-          "again, or use the log knowing what is wrong";
+          "suspicious, and no option mends it for certain: read above what each suspicion is from, then export or copy "
+          "the file again, or use the log knowing what is wrong";
     } else {
       report_.verdict = fmt::format("{}{}", fmt::join(report_.settings, " "),
                                     helpless > 0 ? " mends a part of it; no option mends the rest: export or copy the "

@@ -42,10 +42,6 @@ std::vector<VorTest> test_vor(const GazeLog& log);
 // exchanged, or could not be tested because `unit_is_wrong`.
 bool examine_axes(const GazeLog& log, bool unit_is_wrong, GazeInspection& inspection);
 
-// Empty where 90 % of the positions fit the unit and the origin under which they were read. `display` is what is known
-// about the display or the scene camera's picture.
-std::optional<GazeFinding> doubt_position_unit(const GazeUnderInspection& gaze, const DisplayGeometry& display);
-
 // Fills axes, findings, verdict and settings from the rest of the inspection. `whole` is the log with the numbers of
 // its file, or null.
 void find_what_is_wrong(const GazeLog& log, const GazeUnderInspection* whole, const GazeInspectOptions& options,

@@ -36,28 +36,12 @@ class Text {
     text_ += '\n';
   }
   void plain(const std::string& text) { text_ += text + "\n"; }
+  void append(const std::string& lines) { text_ += lines; }
   [[nodiscard]] const std::string& str() const { return text_; }
 
  private:
   std::string text_;
 };
-
-// What a fact rests on.
-std::string_view evidence_text(Evidence evidence) {
-  switch (evidence) {
-    case Evidence::option:
-      return "as you say";
-    case Evidence::sidecar:
-      return "by the sidecar";
-    case Evidence::header:
-      return "stated in the file";
-    case Evidence::format:
-      return "by the definition of the format";
-    case Evidence::statistics:
-      return "a guess from the numbers";
-  }
-  return "a guess from the numbers";
-}
 
 std::string geometry_text(const DisplayGeometry& g) {
   const auto px = g.width_px > 0 ? fmt::format("{} x {} px", g.width_px, g.height_px) : "pixels not stated";
@@ -77,10 +61,7 @@ void write_log(const GazeInspection& r, Text& text) {
             r.kind == GazeKind::direction ? "directions from the head"
             : r.kind == GazeKind::screen  ? "on a screen"
                                           : "on a scene camera's picture");
-  for (const GazeFact& fact : r.facts) {
-    text.plain(fmt::format("  {:<17} {} ({}{}{})", fact.what, fact.value, evidence_text(fact.evidence),
-                           fact.detail.empty() ? "" : ": ", fact.detail));
-  }
+  text.append(decisions_in_words(r.facts));
   text.line("geometry", "{}", r.geometry ? geometry_text(*r.geometry) : "not stated by the log");
 }
 
@@ -114,7 +95,8 @@ void write_time(const GazeInspection& r, Text& text) {
     text.line("rate", "not known: the log holds one row");
     return;
   }
-  text.line("rate", "{:.2f} Hz by the median step, {:.2f} Hz by the mean; {}", t.median_rate_hz, t.mean_rate_hz,
+  text.line("rate", "{:.2f} Hz by the median step, {:.2f} Hz by the mean{}; {}", t.median_rate_hz, t.mean_rate_hz,
+            t.gaps > 0 ? " without the gaps" : "",
             t.nominal_rate_hz > 0 ? fmt::format("the log states {:g} Hz", t.nominal_rate_hz) : "the log states none");
   text.line("steps", "half of them last {:.3f} to {:.3f} ms; their standard deviation (jitter) is {:.3f} ms",
             t.step_q1_ns * 1e-6, t.step_q3_ns * 1e-6, t.jitter_ns * 1e-6);
@@ -144,9 +126,10 @@ void write_quality(const GazeInspection& r, Text& text) {
       text.plain(fmt::format("  {:<17} {} ({:.2f} %)", to_string(validity), count, percent(count)));
     }
   }
-  text.line("losses", "{} as long as blinks (50 to 500 ms{}), {} longer, the longest {}{}{}", loss.blink_like,
+  const bool loses = loss.usable < loss.samples;
+  text.line("losses", "{} as long as blinks (50 to 500 ms{}), {} longer{}{}{}", loss.blink_like,
             loss.blink_like > 0 ? fmt::format(", median {:.0f} ms", loss.blink_like_median_ms) : "", loss.longer,
-            duration_text(loss.longest_ns),
+            loses ? ", the longest " + duration_text(loss.longest_ns) : "",
             loss.leading_ns > 0 ? ", " + duration_text(loss.leading_ns) + " at the beginning" : "",
             loss.trailing_ns > 0 ? ", " + duration_text(loss.trailing_ns) + " at the end" : "");
   text.line("frozen",
@@ -179,9 +162,9 @@ void write_quality(const GazeInspection& r, Text& text) {
   }
   if (r.disparity) {
     const GazeDisparity& d = *r.disparity;
-    text.line("disparity", "left minus right: {:.{}f} {} to the right (spread {:.{}f}), {:.{}f} {} up (spread {:.{}f})",
-              d.horizontal, digits, r.unit, d.horizontal_spread, digits, d.vertical, digits, r.unit, d.vertical_spread,
-              digits);
+    text.line("disparity", "left minus right: {:.{}f} {} to the {} (spread {:.{}f}), {:.{}f} {} {} (spread {:.{}f})",
+              std::abs(d.horizontal), digits, r.unit, d.horizontal < 0 ? "left" : "right", d.horizontal_spread, digits,
+              std::abs(d.vertical), digits, r.unit, d.vertical < 0 ? "down" : "up", d.vertical_spread, digits);
   }
   std::string events;
   for (std::size_t i = 0; i < kReportedEvents.size(); ++i) {
@@ -214,7 +197,7 @@ std::string inspection_text(const GazeInspection& r) {
     text.line(to_string(finding.kind), "{} [{}]", finding.what, finding.code);
     text.plain(fmt::format("  from            {}", finding.evidence));
     if (!finding.setting.empty()) {
-      text.plain(fmt::format("  mended by       {}", finding.setting));
+      text.plain(fmt::format("  {:<15} {}", finding.is_open ? "answered by" : "mended by", finding.setting));
     }
   }
   text.line("verdict", "{}", r.verdict);

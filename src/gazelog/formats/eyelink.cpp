@@ -41,6 +41,35 @@ struct BlockBegin {
   std::int64_t line, begin_ns;
 };
 
+// Samples as edf2asc writes them without messages: a whole stamp, three or six numbers, and flags of dots and letters.
+// Returns how many numbers there are; 0 for another text.
+std::size_t numbers_of_bare_samples(std::string_view text) {
+  constexpr std::size_t kLooked = 20;
+  std::size_t found = 0;
+  std::size_t lines_seen = 0;
+  std::vector<std::string_view> words;
+  LineReader lines(text);
+  for (std::string_view line; lines_seen < kLooked && lines.next(line);) {
+    split_cells(line, ' ', words);
+    if (words.empty()) {
+      continue;
+    }
+    ++lines_seen;
+    const std::size_t numbers = words.size() - 2;
+    const std::string_view flags = words.back();
+    const bool fits = words.size() > 4 && words[0].size() > 3 &&
+                      words[0].find_first_not_of("0123456789.") == std::string_view::npos &&
+                      (numbers == 3 || numbers == 6) && flags.size() == (numbers == 6 ? 5 : 3) &&
+                      flags.find_first_not_of(".ICR") == std::string_view::npos &&
+                      line.find('\t') != std::string_view::npos && (found == 0 || found == numbers);
+    if (!fits) {
+      return 0;
+    }
+    found = numbers;
+  }
+  return found;
+}
+
 class AscReader {
  public:
   AscReader(const GazeFile& file, const GazeReadOptions& options) : file_(file), options_(options) {
@@ -54,6 +83,10 @@ class AscReader {
     // Messages of a calibration go on in lines that begin with digits; only what stands between START and END is a
     // sample. Files of samples alone have neither.
     const bool has_blocks = file_.text.starts_with("START") || file_.text.find("\nSTART") != std::string::npos;
+    if (const std::size_t numbers = has_blocks ? 0 : numbers_of_bare_samples(file_.text); numbers > 0) {
+      is_bare_ = true;
+      block_.has_right = numbers == 6;
+    }
     LineReader lines(file_.text);
     for (std::string_view line; lines.next(line);) {
       line_ = lines.number();
@@ -101,6 +134,13 @@ class AscReader {
     if (key == "MSG") {
       read_message(line);
     } else if (key == "START") {
+      if (in_block_) {
+        raw_.warnings.push_back(fmt::format("{}: the recording block that began at {} ns has no END",
+                                            place_of(file_, line_), block_start_));
+        raw_.events.push_back({GazeEventType::segment, Eye::cyclopean, block_start_,
+                               raw_.rows.empty() ? block_start_ : raw_.rows.t_ns(raw_.rows.size() - 1),
+                               "recording block without its end", line_ - 1});
+      }
       block_start_ = time(word(1));
       blocks_.push_back({line_after_end_.value_or(line_), block_start_});
       line_after_end_.reset();
@@ -153,6 +193,10 @@ class AscReader {
       const auto y = number_from(res[2]);
       if (x && y && *x > 0 && *y > 0) {
         resolutions_.push_back({*x, *y});
+        raw_.pixels_per_degree_of_blocks.resize(blocks_.size());
+        if (!blocks_.empty()) {
+          raw_.pixels_per_degree_of_blocks.back() = {*x, *y};
+        }
       }
     }
   }
@@ -178,25 +222,40 @@ class AscReader {
         return;
       }
     }
-    const double width = corners[2] - corners[0] + 1;
-    const double height = corners[3] - corners[1] + 1;
+    double width = corners[2] - corners[0] + 1;
+    double height = corners[3] - corners[1] + 1;
+    // Some programs write the size in place of the last corner: 0 0 1280 1024.
+    const bool is_size = !is_usual_height(height) && is_usual_height(height - 1);
+    width -= is_size ? 1 : 0;
+    height -= is_size ? 1 : 0;
     if (!(width >= 2 && height >= 2 && width < 1e5 && height < 1e5) || (coordinates_are_gaze_ && !is_gaze)) {
       return;
     }
     coordinates_are_gaze_ = is_gaze;
-    move_corner({corners[0], corners[1]});
-    raw_.recording_geometry = DisplayGeometry{.width_px = static_cast<int>(std::lround(width)),
-                                              .height_px = static_cast<int>(std::lround(height))};
-    coordinates_ = fmt::format("{} {} {} {} {}", word(2), word(3), word(4), word(5), word(6));
+    const std::array<int, 2> size{static_cast<int>(std::lround(width)), static_cast<int>(std::lround(height))};
+    move_corner({corners[0], corners[1]}, size);
+    if (raw_.rows.empty()) {
+      raw_.recording_geometry = DisplayGeometry{.width_px = size[0], .height_px = size[1]};
+      coordinates_ = fmt::format("{} {} {} {} {}, {}", word(2), word(3), word(4), word(5), word(6),
+                                 is_size ? "which is the size, not the last pixel" : "inclusive corners");
+    }
   }
 
-  // A corner holds for the rows below the line that states it.
-  void move_corner(const Vec2d& corner) {
+  static bool is_usual_height(double px) {
+    static constexpr std::array kHeights{480,  600,  720,  768,  800,  864,  900,  960,  1024,
+                                         1050, 1080, 1200, 1280, 1440, 1536, 1600, 2160, 2880};
+    return std::find(kHeights.begin(), kHeights.end(), static_cast<int>(std::lround(px))) != kHeights.end();
+  }
+
+  // A corner and a size hold for the rows below the line that states them.
+  void move_corner(const Vec2d& corner, const std::array<int, 2>& size) {
     const std::size_t next_row = raw_.rows.size();
+    const std::array<int, 2> before = raw_.corners.empty() ? size_ : raw_.corners.back().size_px;
     if (next_row == 0) {
       raw_.declared.corner = corner;
-    } else if (!(corner == corner_of(raw_, raw_.declared, next_row))) {
-      raw_.corners.push_back({next_row, corner});
+      size_ = size;
+    } else if (!(corner == corner_of(raw_, raw_.declared, next_row)) || before != size) {
+      raw_.corners.push_back({next_row, corner, size});
     }
   }
 
@@ -305,6 +364,10 @@ class AscReader {
            "it is short or cut off; remove or mend it");
     }
     const std::string_view flags = find_flags();
+    if (is_bare_ && block_.eyes() == 1) {
+      raw_.rows.push_back(eye_sample(t_ns, Eye::cyclopean, 1, flags));  // which eye it was is not said
+      return;
+    }
     std::size_t column = 1;
     for (const Eye eye : {Eye::left, Eye::right}) {
       if (eye == Eye::left ? block_.has_left : block_.has_right) {
@@ -403,7 +466,21 @@ class AscReader {
 
   void finish() {
     if (raw_.rows.empty()) {
+      const bool has_events = std::any_of(raw_.events.begin(), raw_.events.end(), [](const GazeEvent& event) {
+        return event.type == GazeEventType::fixation || event.type == GazeEventType::saccade;
+      });
+      if (has_events) {
+        throw Error(ErrorKind::input, file_.path,
+                    "holds the tracker's events and no samples, as `edf2asc -e` writes it",
+                    "run edf2asc again without -e, for samples and events");
+      }
       return;
+    }
+    if (is_bare_ && !options_.display && !options_.guess_display) {
+      throw Error(ErrorKind::input, file_.path,
+                  "holds EyeLink samples without a header, as edf2asc writes them without messages: the size of the "
+                  "display is not in it",
+                  "run edf2asc again with messages, or give `screen-px` W,H of the recording");
     }
     divide();
     mark_blinks();
@@ -427,7 +504,7 @@ class AscReader {
     if (raw_.recording_geometry) {
       add_note(raw_, "display size",
                fmt::format("{}x{} px", raw_.recording_geometry->width_px, raw_.recording_geometry->height_px),
-               Evidence::header, coordinates_ + ", inclusive corners");
+               Evidence::header, coordinates_);
     }
     fixations_.finish(raw_, "the fixations' means (EFIX)");
     if (block_.eyes() == 2) {
@@ -449,6 +526,8 @@ class AscReader {
   std::optional<std::int64_t> line_after_end_ = 1;  // of the block before; empty: it has not ended
   std::vector<BlockBegin> blocks_;
   bool in_block_ = false;
+  bool is_bare_ = false;       // samples alone, without a header
+  std::array<int, 2> size_{};  // of the display where the rows begin
   bool coordinates_are_gaze_ = false;
   std::string coordinates_;
   std::vector<Vec2d> resolutions_;
@@ -469,7 +548,7 @@ double sniff_gaze_eyelink(const GazeFile& file) {
   }
   const int marks = (has("\nSAMPLES") ? 1 : 0) + (has("\nSTART") ? 1 : 0) + (has("\nMSG") ? 1 : 0) +
                     (has("\nPRESCALER") ? 1 : 0) + (head.starts_with("**") || head.starts_with("MSG") ? 1 : 0);
-  return marks >= 3 ? 0.9 : marks == 2 ? 0.4 : 0.0;
+  return marks >= 3 ? 0.9 : marks == 2 ? 0.4 : marks == 0 && numbers_of_bare_samples(head) > 0 ? 0.85 : 0.0;
 }
 
 RawGaze read_gaze_eyelink(const GazeFile& file, const GazeReadOptions& options) {

@@ -25,7 +25,14 @@ double sniff_gaze_generic(const GazeFile& file) {
 }
 
 RawGaze read_gaze_generic(const GazeFile& file, const GazeReadOptions& options) {
-  return read_mapped_table(file, open_table(file), options.columns, ValidityStyle::any);
+  const DelimitedTable table = open_table(file);
+  RawGaze raw = read_mapped_table(file, table, options.columns, ValidityStyle::any);
+  raw.is_own_table = true;
+  if (table.find("ET_GazeLeftx") && raw.declared.unit.value == PositionUnit::automatic) {
+    raw.declared.unit = {PositionUnit::px, Evidence::format, "as iMotions exports gaze"};
+    raw.declared.missing_value = -1;
+  }
+  return raw;
 }
 
 }  // namespace gazetrace

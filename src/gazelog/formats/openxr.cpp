@@ -7,7 +7,10 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
+#include "core/statistics.hpp"
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
 
@@ -69,6 +72,82 @@ std::array<double, N> values(TableRows& rows, const Columns<N>& columns) {
   return found;
 }
 
+Quatd inverse(const Quatd& q) {
+  return {-q.x, -q.y, -q.z, q.w};
+}
+
+// A row's gaze as it is written, with the head at that time.
+struct PosedGaze {
+  std::int64_t t_ns;
+  Vec3d direction;
+  Quatd head;
+};
+
+// How fast gaze moves in the world while the head turns, in degrees a second, in the median: small under the right
+// reading, since eyes hold on to things at rest.
+double world_speed_deg_s(const std::vector<PosedGaze>& gazes, bool is_in_world) {
+  constexpr std::int64_t kSpanNs = 50'000'000;
+  constexpr double kLeastHeadDegS = 5;
+  std::vector<double> speeds;
+  std::size_t ahead = 0;
+  for (const PosedGaze& a : gazes) {
+    while (ahead < gazes.size() && gazes[ahead].t_ns - a.t_ns < kSpanNs) {
+      ++ahead;
+    }
+    if (ahead == gazes.size()) {
+      break;
+    }
+    const PosedGaze& b = gazes[ahead];
+    const double seconds = static_cast<double>(b.t_ns - a.t_ns) * 1e-9;
+    const double head = angle_between_rad(rotate(a.head, {0, 0, -1}), rotate(b.head, {0, 0, -1})) * kDegPerRad;
+    if (head / seconds > kLeastHeadDegS) {
+      const Vec3d from = is_in_world ? a.direction : rotate(a.head, a.direction);
+      const Vec3d to = is_in_world ? b.direction : rotate(b.head, b.direction);
+      speeds.push_back(angle_between_rad(from, to) * kDegPerRad / seconds);
+    }
+  }
+  constexpr std::size_t kFewest = 20;
+  return speeds.size() < kFewest ? kNan : lower_quantile(speeds, 0.5);
+}
+
+// Whether the poses of gaze stand in the space of the head's poses rather than in the head. Decided by the places of
+// both, which agree there, and else by how steady gaze is in the world.
+class GazeSpace {
+ public:
+  void add(const Vec3d& gaze_m, const Vec3d& head_m) {
+    if (std::isfinite(length(gaze_m)) && std::isfinite(length(head_m))) {
+      from_origin_.push_back(length(gaze_m));
+      from_head_.push_back(length(gaze_m - head_m));
+    }
+  }
+  std::optional<bool> is_world(const std::vector<PosedGaze>& gazes, std::string& evidence) {
+    constexpr double kNearM = 0.2;
+    if (!from_head_.empty()) {
+      const double origin_m = lower_quantile(from_origin_, 0.5);
+      const double head_m = lower_quantile(from_head_, 0.5);
+      if ((origin_m < kNearM) != (head_m < kNearM)) {
+        evidence =
+            fmt::format("gaze begins {:.2f} m from the origin and {:.2f} m from the head's place", origin_m, head_m);
+        return head_m < kNearM;
+      }
+    }
+    const double as_head = world_speed_deg_s(gazes, false);
+    const double as_world = world_speed_deg_s(gazes, true);
+    evidence = fmt::format(
+        "while the head turns, gaze in the world moves by {:.1f} deg/s if it stands in the head, by "
+        "{:.1f} deg/s if in the world",
+        as_head, as_world);
+    constexpr double kClear = 2;
+    if (as_head > kClear * as_world || as_world > kClear * as_head) {
+      return as_head > as_world;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::vector<double> from_origin_, from_head_;
+};
+
 bool is_rotation(const std::array<double, 4>& q) {
   const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   return std::isfinite(norm) && norm > 1e-6;
@@ -86,6 +165,40 @@ bool is_tracked(TableRows& rows, const PoseColumns& c) {
     return text == "1" || text == "true";
   }
   return true;
+}
+
+// Turns gaze that stands in the world into the head.
+void settle_space(RawGaze& raw, const GazeReadOptions& options, const PoseColumns& c, bool has_head,
+                  const std::vector<PosedGaze>& gazes, GazeSpace space_of_gaze, const std::string& place) {
+  if (c.space || !has_head) {
+    return;
+  }
+  bool is_world = options.frame == GazeFrame::world;
+  std::string evidence;
+  if (options.frame != GazeFrame::world && options.frame != GazeFrame::head) {
+    const std::optional<bool> found = space_of_gaze.is_world(gazes, evidence);
+    if (!found) {
+      raw.faults.push_back({"gaze-space", place,
+                            "whether the poses of gaze stand in the head or in the world of the head's poses is "
+                            "undecided: " +
+                                evidence,
+                            "say it with `gaze-frame` head or `gaze-frame` world", "`gaze-frame` head or world",
+                            "whether gaze stands in the head or in the world is undecided: " + evidence});
+    }
+    is_world = found.value_or(false);
+  }
+  add_note(raw, "space of gaze", is_world ? "world, turned into the head" : "head",
+           evidence.empty() ? Evidence::option : Evidence::statistics, evidence);
+  if (!is_world) {
+    return;
+  }
+  RawRows rows;
+  for (std::size_t i = 0; i < raw.rows.size(); ++i) {
+    RawSample sample = raw.rows[i];
+    sample.at = rotate(inverse(gazes[i].head), sample.at);
+    rows.push_back(sample);
+  }
+  raw.rows = std::move(rows);
 }
 
 }  // namespace
@@ -119,6 +232,8 @@ RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
   const TimeScale scale = declare_time(raw, options, table.headings[time].text, stated.value_or(0),
                                        stated ? Evidence::header : Evidence::format, place);
   const bool has_head = c.head[0].has_value();
+  std::vector<PosedGaze> gazes;  // of rows that state no space
+  GazeSpace space_of_gaze;
   std::string last_sample_time;
   std::size_t repeats = 0;
   TableRows rows(file, table, table.headings.size());
@@ -130,6 +245,8 @@ RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
     const bool head_known = has_head && is_rotation(h);
     if (head_known && c.head_position[0]) {
       const auto p = values(rows, c.head_position);
+      const auto g = values(rows, c.gaze_position);
+      space_of_gaze.add({g[0], g[1], g[2]}, {p[0], p[1], p[2]});
       raw.head.push_back(head_pose_from_axes(t_ns, {p[0], p[1], p[2]}, head, options.columns.head_axes));
     }
     // Runtimes that cannot interpolate clamp the time, which gives the same sample again. 0 is an unknown time.
@@ -151,12 +268,13 @@ RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
           rows.fail(fmt::format("gaze is in the space '{}', and the row has no head orientation", space.substr(0, 20)),
                     "log gaze in the VIEW space, or the head's pose with it");
         }
-        const Quatd unit = normalize(head);
-        sample.at = rotate({-unit.x, -unit.y, -unit.z, unit.w}, sample.at);
+        sample.at = rotate(inverse(normalize(head)), sample.at);
       }
     }
+    gazes.push_back({t_ns, sample.at, head_known ? normalize(head) : Quatd{}});
     raw.rows.push_back(sample);
   }
+  settle_space(raw, options, c, has_head, gazes, space_of_gaze, place);
   if (repeats > 0) {
     raw.warnings.push_back(
         fmt::format("{}: {} rows repeat the sample of the row before; left out", file.path, repeats));

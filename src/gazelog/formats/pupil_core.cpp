@@ -37,7 +37,10 @@ CoreColumns find_columns(const DelimitedTable& table, const GazeReadOptions& opt
     c.needed = std::max(c.needed, *found + 1);
     return *found;
   };
-  c.time = time_column(table, options, need(table.find("gaze_timestamp") ? "gaze_timestamp" : "timestamp"), place);
+  // canonical_timestamp_s: Ego4D, which has Pupil's other columns.
+  const auto own = table.find_any({"gaze_timestamp", "timestamp", "canonical_timestamp_s"});
+  c.time = time_column(table, options, own || !options.columns.time.empty() ? own.value_or(0) : need("gaze_timestamp"),
+                       place);
   c.confidence = need("confidence");
   c.x = need("norm_pos_x");
   c.y = need("norm_pos_y");

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
@@ -27,12 +28,14 @@ struct LabColumns {
   int time_exponent = 3;
   OptionalColumn sensor, event, movement, movement_index, width, height;
   std::vector<EyeInLab> eyes;
-  bool is_declared = false;
+  OptionalColumn picture_width, picture_height;            // of the scene camera's picture
+  std::array<std::array<OptionalColumn, 3>, 2> direction;  // of the left and the right eye, in the head
+  bool is_declared = false, is_glasses = false;
   std::size_t needed = 0;
 };
 
 // "Gaze point X", "Gaze point X (DACSpx)", "Gaze point X [DACS px]": of the display, or bare.
-OptionalColumn display_column(const DelimitedTable& table, std::string_view name) {
+OptionalColumn display_column(const DelimitedTable& table, std::string_view name, bool is_glasses) {
   const std::string wanted = letters_and_digits(name);
   OptionalColumn bare;
   for (std::size_t i = 0; i < table.headings.size(); ++i) {
@@ -41,7 +44,7 @@ OptionalColumn display_column(const DelimitedTable& table, std::string_view name
       continue;
     }
     const std::string unit = letters_and_digits(heading.unit);
-    if (unit == "dacspx") {
+    if (unit == "dacspx" || (is_glasses && unit == "mcspx")) {
       return i;
     }
     if (unit.empty() || unit == "px") {
@@ -71,8 +74,21 @@ bool has_prefix(const DelimitedTable& table, std::string_view prefix) {
               "`gaze-y-column` and give their picture's size with `screen-px`");
 }
 
-LabColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, const std::string& place) {
+// Glasses have an accelerometer and a gyroscope, and gaze in space or mapped onto snapshots.
+bool is_of_glasses(const GazeFile& file, const DelimitedTable& table) {
+  const std::string_view head = head_of(file);
+  const bool has_head_units = std::any_of(table.headings.begin(), table.headings.end(),
+                                          [](const ColumnHeading& h) { return to_lower(h.unit).starts_with("hucs"); });
+  return has_head_units || has_prefix(table, "Gaze point 3D") || has_prefix(table, "Mapped gaze X") ||
+         has_prefix(table, "Gyro") || has_prefix(table, "Accelerometer") ||
+         head.find("\tGyroscope\t") != std::string_view::npos ||
+         head.find("\tAccelerometer\t") != std::string_view::npos;
+}
+
+LabColumns find_columns(const GazeFile& file, const DelimitedTable& table, const GazeReadOptions& options,
+                        const std::string& place) {
   LabColumns c;
+  c.is_glasses = is_of_glasses(file, table);
   const auto keep = [&](OptionalColumn column) {
     c.needed = std::max(c.needed, column ? *column + 1 : 0);
     return column;
@@ -100,8 +116,8 @@ LabColumns find_columns(const DelimitedTable& table, const GazeReadOptions& opti
     for (const auto& [part, side, eye] : {std::tuple("", "", Eye::cyclopean), std::tuple("left ", "left", Eye::left),
                                           std::tuple("right ", "right", Eye::right)}) {
       EyeInLab columns{eye,
-                       display_column(table, fmt::format("Gaze point {}X", part)),
-                       display_column(table, fmt::format("Gaze point {}Y", part)),
+                       display_column(table, fmt::format("Gaze point {}X", part), c.is_glasses),
+                       display_column(table, fmt::format("Gaze point {}Y", part), c.is_glasses),
                        {},
                        {}};
       if (columns.x && columns.y) {
@@ -115,19 +131,21 @@ LabColumns find_columns(const DelimitedTable& table, const GazeReadOptions& opti
       }
     }
   }
+  if (c.is_glasses) {
+    c.picture_width = keep(table.find("Recording media width"));
+    c.picture_height = keep(table.find("Recording media height"));
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        c.direction[eye][axis] =
+            keep(table.find(fmt::format("Gaze direction {} {} [HUCS norm]", eye == 0 ? "left" : "right", "XYZ"[axis])));
+      }
+    }
+  }
   if (c.eyes.empty()) {
     no_gaze_points(table, place);
   }
   c.needed = std::max(c.needed, c.time + 1);
   return c;
-}
-
-// Glasses have an accelerometer and a gyroscope, and gaze in space.
-bool is_of_glasses(const GazeFile& file, const DelimitedTable& table) {
-  const std::string_view head = head_of(file);
-  return has_prefix(table, "Gaze point 3D") || has_prefix(table, "Gyro") || has_prefix(table, "Accelerometer") ||
-         head.find("\tGyroscope\t") != std::string_view::npos ||
-         head.find("\tAccelerometer\t") != std::string_view::npos;
 }
 
 std::optional<GazeEventType> movement_type(std::string_view text) {
@@ -151,16 +169,22 @@ double sniff_gaze_tobii_pro_lab(const GazeFile& file) {
 RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
   const std::string place = place_of(file, table.header_line);
-  const LabColumns c = find_columns(table, options, place);
+  const LabColumns c = find_columns(file, table, options, place);
   RawGaze raw;
   raw.source = file.path;
   raw.format = "tobii-pro-lab";
   raw.clock = "recording, from its start";
   raw.pupil_unit = "mm";
-  if (!c.is_declared && is_of_glasses(file, table)) {
-    raw.way_out =
-        "export gaze mapped onto a snapshot, or read the glasses' own files (gazedata.gz) with "
-        "`gaze-frame` head";
+  const bool has_directions = c.direction[0][0] && c.direction[0][1] && c.direction[0][2] && c.direction[1][0] &&
+                              c.direction[1][1] && c.direction[1][2];
+  const bool takes_directions = c.is_glasses && options.frame == GazeFrame::head && has_directions;
+  if (takes_directions) {
+    raw.kind = GazeKind::direction;
+  } else if (!c.is_declared && c.is_glasses) {
+    raw.way_out = has_directions
+                      ? "take directions from the head with `gaze-frame` head"
+                      : "export directions of gaze (HUCS), or read the glasses' own files (gazedata.gz) with "
+                        "`gaze-frame` head";
     raw.kind = GazeKind::scene_camera;
   }
   const bool unit_stated = !table.headings[c.time].unit.empty();
@@ -193,7 +217,20 @@ RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
                  "Recording resolution width and height");
       }
     }
-    for (const EyeInLab& eye : c.eyes) {
+    if (c.picture_width && c.picture_height && !raw.picture_px) {
+      const Vec2d picture{rows.number(*c.picture_width), rows.number(*c.picture_height)};
+      if (picture.x >= 1 && picture.y >= 1 && picture.x < 1e5 && picture.y < 1e5) {
+        raw.picture_px = picture;
+      }
+    }
+    for (std::size_t eye = 0; takes_directions && eye < 2; ++eye) {
+      RawSample sample = missing_row(t_ns, rows.line(), eye == 0 ? Eye::left : Eye::right);
+      const auto& d = c.direction[eye];
+      sample.at = {rows.number(d[0]), rows.number(d[1]), rows.number(d[2])};
+      sample.validity = length(sample.at) > 0 ? GazeValidity::ok : GazeValidity::lost;
+      raw.rows.push_back(sample);
+    }
+    for (const EyeInLab& eye : takes_directions ? std::vector<EyeInLab>() : c.eyes) {
       const double pupil = rows.number(eye.pupil);
       RawSample sample = position_row(t_ns, rows.line(), eye.eye, {rows.number(eye.x), rows.number(eye.y)}, pupil);
       sample.pupil = static_cast<float>(pupil);
@@ -212,6 +249,11 @@ RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
   runs.finish(raw);
   if (others > 0) {
     add_note(raw, "rows left out", std::to_string(others), Evidence::header, "of other sensors, and of events");
+  }
+  if (takes_directions) {
+    declare_directions(raw, {"Gaze direction left X, ...", Evidence::header}, GazeAxes::sranipal, Evidence::format,
+                       place);
+    return raw;
   }
   const std::string columns = table.headings[*c.eyes.front().x].text + ", " + table.headings[*c.eyes.front().y].text;
   declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::format, columns}, place);

@@ -4,6 +4,7 @@
 // conventions differ. Times are doubles in the file itself.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -11,6 +12,7 @@
 
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
+#include "gazelog/recordings.hpp"
 #include "gazelog/units.hpp"
 #include "gazelog/xdf_file.hpp"
 
@@ -26,7 +28,7 @@ struct GazeChannels {
   Eye eye = Eye::cyclopean;
   std::array<std::optional<std::size_t>, 3> at;  // x, y or x, y, z
   std::optional<std::size_t> confidence, pupil;
-  bool is_direction = false, is_scene_camera = false;
+  bool is_direction = false, is_scene_camera = false, is_point = false;
 };
 
 void read_header(XdfStream& stream) {
@@ -81,7 +83,14 @@ constexpr std::size_t kNoRole = 5;
 // 0 x, 1 y, 2 z; 3 confidence, 4 pupil.
 struct Role {
   std::size_t index = kNoRole;
-  bool is_direction = false, is_scene_camera = false;
+  bool is_direction = false, is_scene_camera = false, is_point = false;
+
+  // Places and directions, or places of two pictures, are never mixed in one gaze.
+  [[nodiscard]] bool goes_with(const GazeChannels& gaze) const {
+    const bool is_first = !gaze.at[0] && !gaze.at[1] && !gaze.at[2];
+    return is_first ||
+           (is_direction == gaze.is_direction && is_scene_camera == gaze.is_scene_camera && is_point == gaze.is_point);
+  }
 };
 
 Role role_of(const Channel& channel) {
@@ -89,6 +98,9 @@ Role role_of(const Channel& channel) {
   constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
   for (std::size_t i = 0; i < 3; ++i) {
     const std::string axis(kAxes[i]);
+    if (core == "gazepoint3d" + axis) {
+      return Role{i, true, false, true};
+    }
     if (channel.type == "direction" + axis || core == "direction" + axis || core == "gazedirection" + axis ||
         core == "d" + axis) {
       return Role{i, true, false};
@@ -117,11 +129,18 @@ Role role_of(const Channel& channel) {
 std::vector<GazeChannels> find_gazes(const std::vector<Channel>& channels, const GazeReadOptions& options,
                                      const std::string& path) {
   std::array<GazeChannels, 3> by_eye;
+  // Of Pupil Capture's gaze, directions where the user asks for them.
+  const bool has_picture = std::any_of(channels.begin(), channels.end(),
+                                       [](const Channel& channel) { return role_of(channel).is_scene_camera; });
   for (std::size_t c = 0; c < channels.size(); ++c) {
     Channel channel = channels[c];
     GazeChannels& gaze = by_eye[static_cast<std::size_t>(channel.eye)];
     gaze.eye = channel.eye;
     Role role = role_of(channel);
+    if (has_picture && options.columns.x.empty() &&
+        (options.frame == GazeFrame::head ? role.is_scene_camera : role.is_point)) {
+      role = {};
+    }
     for (const auto& [declared, axis] :
          {std::pair(&options.columns.x, 0U), std::pair(&options.columns.y, 1U), std::pair(&options.columns.z, 2U)}) {
       if (!declared->empty()) {
@@ -132,10 +151,11 @@ std::vector<GazeChannels> find_gazes(const std::vector<Channel>& channels, const
         }
       }
     }
-    if (role.index < 3 && !gaze.at[role.index]) {
+    if (role.index < 3 && !gaze.at[role.index] && role.goes_with(gaze)) {
       gaze.at[role.index] = c;
-      gaze.is_direction = gaze.is_direction || role.is_direction;
-      gaze.is_scene_camera = gaze.is_scene_camera || role.is_scene_camera;
+      gaze.is_direction = role.is_direction;
+      gaze.is_scene_camera = role.is_scene_camera;
+      gaze.is_point = role.is_point;
     } else if (role.index == 3) {
       gaze.confidence = c;
     } else if (role.index == 4) {
@@ -163,19 +183,22 @@ std::vector<GazeChannels> find_gazes(const std::vector<Channel>& channels, const
   return gazes;
 }
 
-const XdfStream& gaze_stream(const std::vector<XdfStream>& streams, const std::string& path) {
-  const XdfStream* found = nullptr;
+// Those with samples, in the order of the file.
+std::vector<const XdfStream*> gaze_streams(const std::vector<XdfStream>& streams, const std::string& path) {
+  std::vector<const XdfStream*> found;
   for (const XdfStream& stream : streams) {
-    if (is_gaze(stream) && stream.channel_format != "string" &&
-        (found == nullptr || stream.times_s.size() > found->times_s.size())) {
-      found = &stream;
+    if (is_gaze(stream) && stream.channel_format != "string" && (!stream.times_s.empty() || found.empty())) {
+      found.push_back(&stream);
     }
   }
-  if (found == nullptr) {
+  if (found.size() > 1 && found.front()->times_s.empty()) {
+    found.erase(found.begin());
+  }
+  if (found.empty()) {
     throw Error(ErrorKind::input, path,
                 fmt::format("none of its {} streams is of type Gaze, Eyetracker or EyeTracking", streams.size()));
   }
-  return *found;
+  return found;
 }
 
 // One gaze out of the values of a sample, one for each channel.
@@ -195,8 +218,9 @@ RawSample sample_of(const double* values, const GazeChannels& gaze, std::int64_t
   return sample;
 }
 
+// Samples are numbered through the streams, from `first_row` on.
 void read_samples(RawGaze& raw, const XdfStream& stream, const std::vector<GazeChannels>& gazes, double least,
-                  const std::string& path) {
+                  std::int64_t first_row, const std::string& path) {
   const std::vector<double> times_s = synchronized_times_s(stream);
   if (stream.values.size() / stream.channels != times_s.size()) {
     throw Error(ErrorKind::input, path,
@@ -211,7 +235,7 @@ void read_samples(RawGaze& raw, const XdfStream& stream, const std::vector<GazeC
       throw Error(ErrorKind::input, path, fmt::format("time {} s of sample {} is no time", times_s[i], i + 1));
     }
     for (const GazeChannels& gaze : gazes) {
-      RawSample sample = sample_of(values, gaze, std::llround(t_ns), static_cast<std::int64_t>(i) + 1);
+      RawSample sample = sample_of(values, gaze, std::llround(t_ns), first_row + static_cast<std::int64_t>(i));
       if (sample.confidence < least && is_usable(sample.validity)) {
         sample.validity = sample.confidence > 0 ? GazeValidity::low_confidence : GazeValidity::lost;
       }
@@ -225,7 +249,10 @@ void declare_gaze(RawGaze& raw, const GazeChannels& gaze, const std::vector<Chan
                   const GazeReadOptions& options, const std::string& path) {
   const std::string columns = channels[*gaze.at[0]].label + ", " + channels[*gaze.at[1]].label;
   if (gaze.is_direction) {
-    declare_directions(raw, {columns, Evidence::header}, GazeAxes::gl, Evidence::format, path);
+    const bool is_declared = options.columns.axes != GazeAxes::automatic;
+    raw.are_points = gaze.is_point;
+    declare_directions(raw, {columns, Evidence::header}, gaze.is_point ? GazeAxes::cv : GazeAxes::gl,
+                       gaze.is_point || is_declared ? Evidence::format : Evidence::statistics, path);
     return;
   }
   PlaceSpace space{PositionUnit::fraction,
@@ -235,14 +262,10 @@ void declare_gaze(RawGaze& raw, const GazeChannels& gaze, const std::vector<Chan
     space.unit = *unit;
     space.origin = *unit == PositionUnit::deg ? PositionOrigin::center : space.origin;
   } else if (!gaze.is_scene_camera) {
-    // Of all that the stream holds: what stands for missing values counts.
-    std::string evidence;
-    space.unit = guess_position_unit(raw.rows, evidence);
-    space.evidence = Evidence::statistics;
+    space.unit = PositionUnit::automatic;
+    space.origin = PositionOrigin::automatic;
     raw.directions_grow_up = options.columns.origin != PositionOrigin::top_left;  // that origin is a guess, too
-    raw.warnings.push_back(
-        fmt::format("{}: guessed from its values ({}) that the positions are in {}; state it with `gaze-unit`", path,
-                    evidence, to_string(space.unit)));
+    raw.is_own_table = true;
   }
   declare_places(raw, space, path);
 }
@@ -259,7 +282,8 @@ RawGaze read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
   raw.format = "xdf";
   raw.clock = "LSL";
   const std::vector<XdfStream> streams = read_xdf(file.text, file.path, raw.damages, read_header);
-  const XdfStream& stream = gaze_stream(streams, file.path);
+  const std::vector<const XdfStream*> all = gaze_streams(streams, file.path);
+  const XdfStream& stream = *all.front();
   const std::vector<Channel> channels = channels_of(stream, file.path);
   const std::vector<GazeChannels> gazes = find_gazes(channels, options, file.path);
   const GazeChannels& first = gazes.front();
@@ -271,7 +295,17 @@ RawGaze read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
                                      : GazeKind::screen;
   raw.nominal_rate_hz = stream.nominal_rate_hz;
   raw.declared.time_exponent = {9, Evidence::format, "doubles in the file, on the recorder's clock"};
-  read_samples(raw, stream, gazes, least_confidence(options, first.is_scene_camera ? 0.6 : 1e-9), file.path);
+  const double least = least_confidence(options, first.is_scene_camera || first.is_point ? 0.6 : 1e-9);
+  std::int64_t first_row = 1;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const XdfStream* const one = all[i];
+    if (all.size() > 1) {
+      begin_recording(raw, fmt::format("stream {}", i + 1), first_row);
+    }
+    read_samples(raw, *one, one == &stream ? gazes : find_gazes(channels_of(*one, file.path), options, file.path),
+                 least, first_row, file.path);
+    first_row += static_cast<std::int64_t>(one->times_s.size());
+  }
   declare_gaze(raw, first, channels, options, file.path);
   return raw;
 }

@@ -147,8 +147,9 @@ OptionSchema<GazeFileSettings> gaze_file_schema() {
              "A table of fixations, saccades or blinks that another program found in this log: they become its events")
       .decides_by_file();
   add_column_options(schema);
-  schema.flag("--gaze-sort", &GazeFileSettings::sort, Touch::gaze,
-              "Sorts unordered stamps and keeps the last of equal ones");
+  schema.value("--gaze-order", gaze_read(&GazeReadOptions::unordered), choices<UnorderedPolicy>(), Touch::gaze,
+               "Stamps that do not grow: an error; sorted, where the last of equal ones is kept; equal ones in pairs "
+               "stand half a step apart; a counter that overflowed (at 2^16 or 2^32) goes on");
   schema
       .value("--gaze-columns", &GazeFileSettings::columns_file, "FILE", Touch::gaze,
              "Column map as JSON, for tables of one's own; 'gazetrace gaze inspect --save-columns' writes one")
@@ -158,7 +159,7 @@ OptionSchema<GazeFileSettings> gaze_file_schema() {
                "left, cv along +z with y down; default: the format's own");
   schema.value("--gaze-frame", gaze_read(&GazeReadOptions::frame), choices<GazeFrame>(), Touch::gaze,
                "Which gaze is taken of a log that states several: head, directions from the head; scene-camera, places "
-               "on the scene camera's picture");
+               "on the scene camera's picture; world, directions in the space of the head's poses");
   schema.value(
       "--gaze-eye", gaze_read(&GazeReadOptions::eye), choices<EyeChoice>(), Touch::gaze,
       "Which gaze is taken of a log of both eyes; auto: its combined gaze, else the mean of both eyes by angle, or the "

@@ -111,11 +111,11 @@ TEST(GazeErrors, Rows) {
   expect_errors({
       {"backwards.csv", header + "2.433,.5,.5,1,left\n2.417,.5,.5,1,left\n",
        "backwards.csv:4: time 2417000000 ns is before that of line 3 (2433000000 ns); sort the log, or use "
-       "`gaze-sort`"},
+       "`gaze-order` sort"},
       {"duplicate.csv", header + "1,.5,.5,1,left\n1,.6,.5,1,left\n",
-       "duplicate.csv:4: time 1000000000 ns repeats that of line 3; remove one of them, or use `gaze-sort`, which "
-       "keeps the "
-       "last"},
+       "duplicate.csv:4: time 1000000000 ns repeats that of line 3; dropping repeats would keep only 2 of 3 rows: "
+       "export "
+       "again with stamps that differ, or look at it with 'gazetrace gaze inspect'"},
       {"short.csv", header + "1,.5,.5\n",
        "short.csv:3: the row has 3 of the 5 cells that reach to column 'eye'; it is short or cut off; remove or mend "
        "it"},

@@ -149,7 +149,7 @@ TEST_F(GazeInterpret, EvidenceSaysWhoSaidIt) {
   EXPECT_EQ(guessed.unit.evidence, Evidence::statistics);
   ASSERT_TRUE(guessed.display);
   EXPECT_EQ(guessed.display->evidence, Evidence::statistics);
-  EXPECT_THAT(guessed.warnings.at(0), HasSubstr("guessed from its values"));
+  EXPECT_THAT(guessed.unit.detail, HasSubstr("90 % of x lie in"));
   options_.columns.position_unit = PositionUnit::px;
   options_.columns.origin = PositionOrigin::center;
   const Conventions given = conclude_conventions(read_raw("time[ms],x[mm],y[mm]\n0,4,2\n16,9,5\n33,1,1\n"), options_);

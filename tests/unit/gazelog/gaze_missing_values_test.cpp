@@ -66,7 +66,9 @@ TEST_F(GazeMissingValues, NoUnitHasTheseCoordinates) {
   for (int i = 0; i < 100; ++i) {
     fractions += i % 10 == 0 ? fmt::format("{},-32768,-32768\n", i) : fmt::format("{},0.4,0.{}\n", i, 1 + i % 8);
   }
-  const GazeLog log = read("c.csv", fractions);
+  GazeReadOptions importing;
+  importing.accepts_inferred = true;
+  const GazeLog log = read("c.csv", fractions, importing);
   EXPECT_EQ(lost_rows(log), 10);
   EXPECT_EQ(log.samples[1].u, 0.4);
 }

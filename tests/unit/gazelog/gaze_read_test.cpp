@@ -16,9 +16,11 @@
 namespace gazetrace {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -88,10 +90,13 @@ TEST_F(GazeRead, DirectionsAreNormalized) {
   EXPECT_THAT(warnings(log), ElementsAre("log.csv: 1 of 4 directions were not of unit length; normalized"));
 }
 
-TEST_F(GazeRead, BackwardDirectionsAreSuspect) {
-  EXPECT_THAT(
-      warnings(read("t[s],dx,dy,dz\n0,0,0,1\n1,0.6,0,0.8\n")),
-      ElementsAre("log.csv: 2 of 2 directions point backwards (+z): forward is -z here, with +x right and +y up"));
+TEST_F(GazeRead, BackwardDirectionsAreRefused) {
+  EXPECT_THAT([&] { read("t[s],dx,dy,dz\n0,0,0,1\n1,0.6,0,0.8\n"); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("2 of 2 directions point backwards"),
+                                         HasSubstr("log.csv -o gaze.csv `gaze-axes` unity"))));
+  GazeReadOptions options;
+  options.columns.axes = GazeAxes::unity;
+  EXPECT_EQ(read("t[s],dx,dy,dz\n0,0,0,1\n1,0.6,0,0.8\n", options).samples[1].direction, (Vec3d{0.6, 0, -0.8}));
 }
 
 TEST_F(GazeRead, UnitsInHeaders) {
@@ -159,7 +164,7 @@ TEST_F(GazeRead, FlagsContradictingTheHeaderWarnAndWin) {
                   "log.csv:1: the header says that 'x[px]' is in px; `gaze-unit` fraction was given and is used"));
 }
 
-TEST_F(GazeRead, UnitsFromStatisticsAreCalledGuesses) {
+TEST_F(GazeRead, UnitsFromStatisticsAreInferredByTheImporterAlone) {
   const auto table = [](double step, double scale) {
     std::string text = "time,x,y\n";
     for (int i = 0; i < 50; ++i) {
@@ -174,30 +179,30 @@ TEST_F(GazeRead, UnitsFromStatisticsAreCalledGuesses) {
   };
   for (const Case& c : {Case{4, "ms", 4'000'000}, Case{8.33, "ms", 8'330'000}, Case{0.004, "s", 4'000'000},
                         Case{3333, "us", 3'333'000}, Case{3'333'000, "ns", 3'333'000}}) {
-    const GazeLog log = read(table(c.step, 1));
+    EXPECT_THAT([&] { read(table(c.step, 1)); },
+                ThrowsMessage<Error>(HasSubstr("log.csv -o gaze.csv `gaze-unit` fraction")));
+    GazeReadOptions importing;
+    importing.accepts_inferred = true;
+    const GazeLog log = read(table(c.step, 1), importing);
     EXPECT_EQ(log.samples[1].t_ns - log.samples[0].t_ns, c.step_ns);
     EXPECT_THAT(warnings(log)[0], fmt::format("log.csv:1: guessed from its steps that 'time' is in {}; state it with "
                                               "`gaze-time-unit`",
                                               c.unit));
-    EXPECT_THAT(warnings(log)[1], HasSubstr("that the positions are in fraction; state it with `gaze-unit`"));
+    EXPECT_EQ(log.conventions.unit.value, PositionUnit::fraction);
+    EXPECT_EQ(log.conventions.unit.evidence, Evidence::statistics);
   }
   // Rows of two eyes: every other step is zero.
   EXPECT_EQ(read("time,u,v,eye\n0,0,0,l\n0,0,0,r\n4,0,0,l\n4,0,0,r\n").samples[1].t_ns, 4'000'000);
-  const GazeLog px = read(table(4, 1000), full_hd());
-  EXPECT_THAT(warnings(px)[1],
-              "log.csv:1: guessed from its values (x 200 to 690, y 500 to 500) that the positions are in "
-              "px; state it with `gaze-unit`");
-  EXPECT_NEAR(px.samples[0].u, 200.0 / 1920, 1e-15);
-  const GazeLog deg = read("t[ms],x,y\n0,-3,2\n4,5,-1\n8,-12,8\n", full_hd());
-  EXPECT_THAT(warnings(deg)[0], HasSubstr("that the positions are in deg"));
+  // Pixels of a stated display are plain; without one, and numbers between, nothing is guessed.
+  EXPECT_NEAR(read(table(4, 1000), full_hd()).samples[0].u, 200.0 / 1920, 1e-15);
+  const std::string degrees = "t[ms],x,y\n0,-3,2\n4,5,-1\n8,-12,8\n";
+  EXPECT_THAT([&] { read(degrees, full_hd()); }, ThrowsMessage<Error>(HasSubstr("degrees or centimetres?")));
 }
 
 TEST_F(GazeRead, SuspiciousValuesAreNamed) {
   GazeReadOptions options = full_hd();
-  EXPECT_THAT(
-      warnings(read("t[s],x[px],y[px]\n0,-300,200\n1,200,-80\n2,10,20\n", options)),
-      ElementsAre("log.csv:1: 67 % of the positions are negative, counted from the top left: is the origin at the "
-                  "center (`gaze-origin` center)?"));
+  EXPECT_THAT([&] { read("t[s],x[px],y[px]\n0,-300,200\n1,200,-80\n2,10,20\n", options); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("67 % of them are negative"), HasSubstr("`gaze-origin` center"))));
   EXPECT_THAT(
       warnings(read("t[s],x[px],y[px]\n0,0,0\n1,200,80\n2,10,20\n", options)),
       ElementsAre("log.csv: 1 of 3 positions are exactly (0, 0): missing values written as zero? Name a validity "

@@ -78,8 +78,8 @@ std::string as_table(const std::vector<TrialRow>& rows, const FrameRate& fps, st
                         row.frames, keep_ids ? "  " + bounded(row.trial.name, 60) : "");
     frames += row.frames;
   }
-  return text + fmt::format("{} trials, {} frames at {} a second; begin_s counts from the log's first sample\n",
-                            rows.size(), frames, to_string(fps));
+  return text + fmt::format("{} {}, {} frames at {} a second; begin_s counts from the log's first sample\n",
+                            rows.size(), rows.size() == 1 ? "trial" : "trials", frames, to_string(fps));
 }
 
 int run_trials(const TrialsArguments& arguments) {

@@ -12,13 +12,14 @@
 #include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_privacy.hpp"
+#include "gazetrace/gaze_read.hpp"
 #include "gazetrace/gaze_write.hpp"
 #include "gazetrace/resolve.hpp"
 
 namespace gazetrace {
 namespace {
 
-struct ConvertArguments {
+struct ImportArguments {
   GazeFileSettings gaze;
   ScreenSettings screen;
   std::vector<std::string> steps;
@@ -39,7 +40,7 @@ std::string file_names(const std::vector<BidsLeftover>& files) {
 // Recordings of the name that is written to are read with it. Those of an earlier conversion go with --overwrite, never
 // others, nor what is being converted.
 std::vector<BidsLeftover> removable_leftovers(const std::vector<std::string>& written,
-                                              const ConvertArguments& arguments) {
+                                              const ImportArguments& arguments) {
   std::vector<BidsLeftover> leftovers = bids_leftovers(written);
   if (leftovers.empty()) {
     return leftovers;
@@ -64,7 +65,18 @@ std::vector<BidsLeftover> removable_leftovers(const std::vector<std::string>& wr
   return leftovers;
 }
 
-int run_convert(const ConvertArguments& arguments) {
+nlohmann::ordered_json decisions_as_json(const std::vector<GazeFact>& facts) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const GazeFact& fact : facts) {
+    json.push_back({{"what", fact.what},
+                    {"value", fact.value},
+                    {"evidence", to_string(fact.evidence)},
+                    {"detail", with_flags(fact.detail)}});
+  }
+  return json;
+}
+
+int run_import(const ImportArguments& arguments) {
   const bool is_bids = is_bids_file_name(arguments.output);
   if (!is_bids) {
     check_output_file(arguments.output, arguments.overwrite);
@@ -72,7 +84,8 @@ int run_convert(const ConvertArguments& arguments) {
   arguments.json.check();
   std::vector<std::string> reports;  // of the steps of processing
   const auto tell = [&](const GazeLog& log, const std::vector<std::string>& files) {
-    std::string text;
+    std::string text = decisions_in_words(log.facts);
+    text = arguments.keep_ids ? text : without_dates(text);
     for (const std::string& report : reports) {
       text += report + "\n";
     }
@@ -80,11 +93,14 @@ int run_convert(const ConvertArguments& arguments) {
       const nlohmann::ordered_json json{{"files", files},
                                         {"samples", log.samples.size()},
                                         {"processing", reports},
+                                        {"decisions", decisions_as_json(log.facts)},
                                         {"warnings", with_flags(log.warnings)}};
       return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     });
   };
-  GazeLog log = read_gaze_file(arguments.gaze, arguments.screen);
+  GazeFileSettings settings = arguments.gaze;
+  settings.read.accepts_inferred = true;
+  GazeLog log = read_gaze_file(settings, arguments.screen);
   print_warnings(log.warnings);
   if (!arguments.keep_ids) {
     print_warnings(leave_out_identities(log));
@@ -130,14 +146,14 @@ int run_convert(const ConvertArguments& arguments) {
 
 }  // namespace
 
-Command add_gaze_convert_command(CLI::App& app, const Invocation& /*invocation*/) {
-  auto arguments = std::make_shared<ConvertArguments>();
-  OptionSchema<ConvertArguments> schema;
-  schema.include(gaze_file_schema(), &ConvertArguments::gaze);
-  schema.include(screen_schema(), &ConvertArguments::screen);
+Command add_gaze_import_command(CLI::App& app, const Invocation& /*invocation*/) {
+  auto arguments = std::make_shared<ImportArguments>();
+  OptionSchema<ImportArguments> schema;
+  schema.include(gaze_file_schema(), &ImportArguments::gaze);
+  schema.include(screen_schema(), &ImportArguments::screen);
   schema.include(gaze_process_schema().with_headings([](const Option&) { return "Processing"; }),
-                 &ConvertArguments::steps);
-  const auto options = std::make_shared<CommandOptions<ConvertArguments>>(std::move(schema));
+                 &ImportArguments::steps);
+  const auto options = std::make_shared<CommandOptions<ImportArguments>>(std::move(schema));
   options->bind(app, *arguments);
   app.add_option("log", arguments->gaze.path, "Gaze log")->required()->type_name("FILE");
   app.add_option("-o,--output", arguments->output,
@@ -153,7 +169,7 @@ Command add_gaze_convert_command(CLI::App& app, const Invocation& /*invocation*/
                "Also writes messages of the experiment and dates in the description of the clock, which can identify a "
                "person or a session; stamps are written as they are either way");
   add_json_option(app, arguments->json, arguments->overwrite);
-  return {[arguments, options] { return run_convert(*arguments); }, {}};
+  return {[arguments, options] { return run_import(*arguments); }, {}};
 }
 
 }  // namespace gazetrace

@@ -9,35 +9,12 @@
 #include <string_view>
 #include <vector>
 
-#include "core/statistics.hpp"
-#include "gaze/inspect/inspect.hpp"
+#include "gazelog/judge.hpp"
 #include "gazelog/row_samples.hpp"
 #include "gazelog/units.hpp"
 
 namespace gazetrace {
 namespace {
-
-// The range of the middle 90 % of the values of usable rows.
-struct Extent {
-  double low = 0, median = 0, high = 0;
-  bool is_of_few = false;
-};
-// Empty where no row is usable.
-std::optional<Extent> extent_of(const RawRows& rows, double Vec3d::*coordinate) {
-  std::vector<double> values;
-  values.reserve(rows.size());
-  for (const RawSample row : rows) {
-    if (is_usable(row.validity) && std::isfinite(row.at.*coordinate)) {
-      values.push_back(row.at.*coordinate);
-    }
-  }
-  if (values.empty()) {
-    return std::nullopt;
-  }
-  constexpr std::size_t kEnough = 10;
-  return Extent{lower_quantile(values, 0.05), lower_quantile(values, 0.5), lower_quantile(values, 0.95),
-                values.size() < kEnough};
-}
 
 bool is_known(const Vec2d& size) {
   return size.x > 0 && size.y > 0;
@@ -78,9 +55,9 @@ std::optional<BetterUnit> doubt_angles_and_lengths(const Positions& p, PositionU
   const auto far = [](const Extent& e, double most_of_it, bool both_ways) {
     return e.high > 1.5 * most_of_it && (both_ways ? e.low < -1.5 * most_of_it : e.median > most_of_it);
   };
-  // No eye turns by a right angle, and no gaze lies beside the display for most of the time. Medians are used because
-  // the extremes may be marks of missing values.
-  const auto turns_too_far = [](const Extent& e) { return std::abs(e.median) > 90 || (e.low < -90 && e.high > 90); };
+  // No eye turns by 60 degrees for long, and no gaze lies beside the display for most of the time. Medians are used
+  // because the extremes may be marks of missing values.
+  const auto turns_too_far = [](const Extent& e) { return std::abs(e.median) > 60 || (e.low < -90 && e.high > 90); };
   const bool is_wrong =
       is_deg ? turns_too_far(x) || turns_too_far(y)
              : is_length && is_known(size) && (far(x, reach.x, from_center) || far(y, reach.y, from_center));
@@ -150,15 +127,19 @@ std::string_view plural_of(PositionUnit unit) {
 }
 
 // How much of the log lies on the display, or can be used, when it is interpreted under other conventions.
-std::string read_so(const GazeUnderInspection& gaze, const Conventions& conventions) {
+std::string read_so(const RawGaze& raw, const RawRows& rows, const Conventions& conventions) {
+  if (!are_positions(conventions)) {
+    return {};
+  }
   try {
-    const GazeLog log = interpret(gaze.raw, conventions);
-    const auto usable = std::count_if(log.samples.begin(), log.samples.end(), [&](const GazeSample& sample) {
-      return is_usable(sample.validity) && sample.validity != GazeValidity::off_screen;
-    });
-    return fmt::format("; read so, {:.0f} % of the samples {}",
-                       100 * static_cast<double>(usable) / static_cast<double>(log.samples.size()),
-                       log.kind == GazeKind::screen ? "lie on the display" : "are usable");
+    const ToFractions to_fractions(conventions, raw.place);
+    std::size_t count = 0;
+    for (const RawSample row : rows) {
+      const Vec2d at = to_fractions({row.at.x, row.at.y});
+      count += is_usable(row.validity) && at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1 ? 1 : 0;
+    }
+    return fmt::format("; read so, {:.0f} % of the samples lie on the display",
+                       100 * static_cast<double>(count) / static_cast<double>(rows.size()));
   } catch (const Error&) {
     return {};  // it would need something that is not known, such as the size of the display
   }
@@ -166,9 +147,8 @@ std::string read_so(const GazeUnderInspection& gaze, const Conventions& conventi
 
 }  // namespace
 
-std::optional<GazeFinding> doubt_position_unit(const GazeUnderInspection& gaze, const DisplayGeometry& display) {
-  const RawGaze& raw = gaze.raw;
-  const Conventions& c = gaze.conventions;
+std::optional<ReadingDoubt> doubt_position_unit(const RawGaze& raw, const Conventions& c,
+                                                const DisplayGeometry& display) {
   if (c.form != PlaceForm::position || c.unit.evidence == Evidence::statistics) {
     return std::nullopt;
   }
@@ -208,17 +188,17 @@ std::optional<GazeFinding> doubt_position_unit(const GazeUnderInspection& gaze, 
     other.unit.value = better->unit;
     other.origin.value = better->origin;
     other.display = Concluded<DisplayGeometry>{display, Evidence::statistics, {}};
-    return GazeFinding{FindingKind::suspicion, "position-unit",
-                       fmt::format("the positions are no {} but {}", plural_of(unit), better->name),
-                       "statistics: " + seen + (better->unit == PositionUnit::automatic ? "" : read_so(gaze, other)),
-                       better->setting};
+    return ReadingDoubt{
+        "position-unit", fmt::format("the positions are no {} but {}", plural_of(unit), better->name),
+        "statistics: " + seen + (better->unit == PositionUnit::automatic ? "" : read_so(raw, rows, other)),
+        better->setting};
   }
   if (is_place && !are_few && c.origin.value == PositionOrigin::top_left && raw.kind == GazeKind::screen &&
       count_from_center(p, size)) {
     other.origin.value = PositionOrigin::center;
-    return GazeFinding{
-        FindingKind::suspicion, "origin", "the positions count from the center of the display, not its top left",
-        fmt::format("statistics: {} {}{}", seen, to_string(unit), read_so(gaze, other)), "`gaze-origin` center"};
+    return ReadingDoubt{"origin", "the positions count from the center of the display, not its top left",
+                        fmt::format("statistics: {} {}{}", seen, to_string(unit), read_so(raw, rows, other)),
+                        "`gaze-origin` center"};
   }
   return std::nullopt;
 }

@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts the rows of a log in the order of time, with at most one for each eye at each time.
+// The stamps of a log: counters that overflow, clocks that start again, rows out of order, at most one row for each eye
+// at each time.
 #pragma once
 
-#include "gazetrace/gaze_log.hpp"
+#include "gazetrace/gaze_raw.hpp"
 
 namespace gazetrace {
+
+// Finds what is odd about the stamps as they stand in the file. Pairs of equal stamps and overflows are mended under
+// the policy that says so, and else are faults; parts of a file between which the clock starts again become recordings.
+void mend_stamps(RawGaze& raw, UnorderedPolicy policy);
+// "the clock starts again in line 7: ", or nothing.
+std::string words_of_restart(const RawGaze& raw);
+
+// Whether keeping one of equal stamps would lose more than a few per cent of the rows.
+bool loses_much(const GazeOrder& order);
 
 // Sorts the samples by time where that is the policy; otherwise throws Error(input) naming the first row that is out of
 // order. `log.order` receives the counts of what was found.

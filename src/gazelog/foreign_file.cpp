@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazelog/foreign_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/text.hpp"
+#include "gazelog/table.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct ForeignKind {
+  std::string_view beginning, name, way_out;
+};
+using std::string_view_literals::operator""sv;
+constexpr std::string_view kExportAsCsv = "export it as CSV with a column of time and columns of gaze";
+constexpr std::array kForeignKinds{
+    ForeignKind{"SR_RESEARCH", "an EyeLink data file (.EDF)",
+                "run `edf2asc FILE.EDF`, and give the .asc file that it writes"},
+    ForeignKind{"\x89HDF\r\n"sv, "an HDF5 file, such as ioHub's of PsychoPy or MATLAB's of version 7.3", kExportAsCsv},
+    ForeignKind{"MATLAB 5.0 MAT-file", "a MATLAB file (.mat)", "write it as CSV with writetable() or writematrix()"},
+    ForeignKind{"PK\x03\x04"sv, "a spreadsheet (.xlsx) or another zip archive",
+                "save the sheet as CSV, or unpack the archive and give the file of gaze in it"},
+    ForeignKind{"PAR1", "a Parquet file", "write it as CSV, such as with pandas: read_parquet(...).to_csv(...)"},
+    ForeignKind{"ARROW1", "an Arrow or Feather file",
+                "write it as CSV, such as with pandas: read_feather(...).to_csv(...)"},
+    ForeignKind{"\x93NUMPY"sv, "a NumPy array (.npy)", "write it as CSV with numpy.savetxt(), with a header"},
+    ForeignKind{"\x80\x04"sv, "a Python pickle", kExportAsCsv},
+    ForeignKind{"\x80\x05"sv, "a Python pickle", kExportAsCsv},
+    ForeignKind{"SQLite format 3", "an SQLite database", kExportAsCsv},
+    ForeignKind{"RDX", "an R data file", "write it as CSV with write.csv()"},
+    ForeignKind{"%PDF", "a PDF document", kExportAsCsv},
+    ForeignKind{"BZh", "a bzip2 archive", "unpack it"},
+    ForeignKind{"\xFD\x37zXZ"sv, "an xz archive", "unpack it"},
+    ForeignKind{"7z\xBC\xAF"sv, "a 7-Zip archive", "unpack it"},
+    ForeignKind{"\x28\xB5\x2F\xFD"sv, "a zstd archive", "unpack it"},
+    ForeignKind{"\xD0\xCF\x11\xE0"sv, "a file of old Excel or Word", "save it as CSV"},
+};
+
+[[noreturn]] void refuse_kind(const GazeFile& file, std::string_view what, std::string_view way_out) {
+  throw Error(ErrorKind::input, file.path, fmt::format("is {}, which is not read here", what), way_out);
+}
+
+// The names in the first object of a JSON text, which tell which columns a CSV of it would have.
+std::string names_in_json(std::string_view line) {
+  std::string names;
+  std::size_t count = 0;
+  constexpr std::size_t kMost = 12;
+  for (std::size_t at = line.find("\":"); at != std::string_view::npos && count < kMost;
+       at = line.find("\":", at + 1)) {
+    const std::size_t begin = line.rfind('"', at - 1);
+    if (begin != std::string_view::npos && begin < at) {
+      names += (count++ == 0 ? "" : ", ") + std::string(line.substr(begin + 1, at - begin - 1));
+    }
+  }
+  return names;
+}
+
+// A table has numbers in some row near its beginning, and names that are no sentences above them.
+bool is_prose(const GazeFile& file) {
+  constexpr std::size_t kLines = 200;
+  std::size_t seen = 0;
+  LineReader lines(file.text);
+  std::vector<std::string_view> cells;
+  for (std::string_view line; seen < kLines && lines.next(line);) {
+    const std::string_view text = trim(line);
+    if (text.empty()) {
+      continue;
+    }
+    ++seen;
+    const char separator = text.find('\t') != std::string_view::npos  ? '\t'
+                           : text.find(';') != std::string_view::npos ? ';'
+                           : text.find(',') != std::string_view::npos ? ','
+                                                                      : ' ';
+    split_cells(text, separator, cells);
+    const auto numbers = std::count_if(cells.begin(), cells.end(),
+                                       [](std::string_view cell) { return number_from(trim(cell)).has_value(); });
+    if (numbers >= 2) {
+      return false;
+    }
+  }
+  return seen > 3;
+}
+
+}  // namespace
+
+void refuse_foreign_file(const GazeFile& file) {
+  const std::string_view text = file.text;
+  for (const ForeignKind& kind : kForeignKinds) {
+    if (text.starts_with(kind.beginning)) {
+      refuse_kind(file, kind.name, kind.way_out);
+    }
+  }
+  const std::string_view head = trim(text.substr(0, text.find('\n')));
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first != std::string_view::npos && (text[first] == '{' || text[first] == '[')) {
+    const std::string names = names_in_json(text.substr(first, 4000));
+    const bool are_lines = head.starts_with('{') && head.ends_with('}');
+    refuse_kind(file, are_lines ? "JSON with an object in each line" : "JSON",
+                fmt::format("write it as CSV with a column of time and columns of gaze{}",
+                            names.empty() ? "" : "; its names are: " + names));
+  }
+  if (is_prose(file)) {
+    refuse_kind(file, "a text without rows of numbers", "give a table of time and gaze, as CSV or TSV with a header");
+  }
+}
+
+}  // namespace gazetrace

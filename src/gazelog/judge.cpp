@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazelog/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/statistics.hpp"
+#include "gazelog/row_samples.hpp"
+#include "gazelog/units.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kAboutOne = 1.6;     // beyond it nothing counts fractions of a display
+constexpr double kLargestAngle = 60;  // beyond it no eye turns, and no display is seen
+constexpr double kFewNegative = 0.05;
+constexpr std::size_t kMostLookedAt = 60'000;
+
+// Numbers about 1 that lie on both sides of 0.
+ReadingDoubt small_numbers_around_zero(const EyeMotion& m) {
+  const bool is_as_high_as_wide = std::max(-m.y.low, m.y.high) > 0.55;  // of the display: no height units
+  const std::string angles = fmt::format("as degrees {}; as radians {}", m.if_degrees(1), m.if_degrees(kDegPerRad));
+  return {"position-unit",
+          fmt::format("the unit of x and y is undecided: PsychoPy's {}, degrees or radians?",
+                      is_as_high_as_wide ? "norm" : "height or norm units"),
+          m.in_words() + "; " + angles,
+          is_as_high_as_wide ? "`gaze-unit` norm, deg or rad" : "`gaze-unit` height, norm, deg or rad"};
+}
+
+ReadingDoubt numbers_of_angles(const EyeMotion& m) {
+  const bool has_both_signs = m.share_negative >= kFewNegative;
+  return {"position-unit",
+          fmt::format("the unit of x and y is undecided: {}?",
+                      has_both_signs ? "degrees or centimetres" : "pixels, centimetres or degrees"),
+          fmt::format("{}; as degrees {}", m.in_words(), m.if_degrees(1)),
+          has_both_signs ? "`gaze-unit` deg or cm" : "`gaze-unit` px, cm or deg"};
+}
+
+ReadingDoubt inferred(const UnitReading& reading) {
+  return {"unit-inferred",
+          fmt::format("the unit of x and y is not stated, only inferred: {}",
+                      reading.unit == PositionUnit::px ? "pixels" : "fractions of the display"),
+          reading.evidence, fmt::format("`gaze-unit` {}", to_string(reading.unit)), false};
+}
+
+bool lies_on(const EyeMotion& m, const Vec2d& size) {
+  const auto fits = [](const Extent& e, double length) {
+    return (e.low > -0.1 * length && e.high < 1.1 * length) || (e.low > -0.6 * length && e.high < 0.6 * length);
+  };
+  return size.x > 0 && fits(m.x, size.x) && fits(m.y, size.y);
+}
+
+class Judge {
+ public:
+  Judge(const RawGaze& raw, const Conventions& c, const DisplayGeometry& display)
+      : raw_(raw), c_(c), display_(display) {}
+
+  std::vector<ReadingDoubt> doubts() {
+    if (c_.form == PlaceForm::position) {
+      if (c_.unit.evidence != Evidence::statistics) {
+        if (auto doubt = doubt_position_unit(raw_, c_, display_)) {
+          add(*std::move(doubt), c_.unit.evidence);
+        }
+      }
+      if (doubts_.empty()) {
+        origin();
+        degrees();
+      }
+    } else if (c_.form == PlaceForm::vector) {
+      directions();
+    }
+    return std::move(doubts_);
+  }
+
+ private:
+  // What is stated of a table of one's own may be a mistake; what a format defines, or the user says, is followed.
+  void add(ReadingDoubt doubt, Evidence evidence) {
+    doubt.is_open = evidence == Evidence::statistics;
+    doubt.refuses = doubt.is_open || (raw_.is_own_table && evidence != Evidence::option);
+    doubts_.push_back(std::move(doubt));
+  }
+
+  void origin() {
+    const bool is_px = c_.unit.value == PositionUnit::px;
+    const Vec2d size =
+        is_px ? Vec2d{static_cast<double>(display_.width_px), static_cast<double>(display_.height_px)} : Vec2d{1, 1};
+    if (!(is_px || c_.unit.value == PositionUnit::fraction) || c_.origin.evidence != Evidence::statistics ||
+        raw_.kind != GazeKind::screen) {
+      return;
+    }
+    std::size_t count = 0;
+    std::size_t negative = 0;
+    std::size_t beside = 0;
+    std::size_t beside_center = 0;
+    const RawRows rows = measurable_rows(raw_, c_);
+    for (const RawSample row : rows) {
+      if (!is_usable(row.validity) || !std::isfinite(row.at.x) || !std::isfinite(row.at.y)) {
+        continue;
+      }
+      ++count;
+      negative += row.at.x < 0 || row.at.y < 0 ? 1 : 0;
+      beside += row.at.x < 0 || row.at.y < 0 || row.at.x > size.x || row.at.y > size.y ? 1 : 0;
+      beside_center += std::abs(row.at.x) > 0.5 * size.x || std::abs(row.at.y) > 0.5 * size.y ? 1 : 0;
+    }
+    const auto percent = [&](std::size_t n) { return 100 * static_cast<double>(n) / static_cast<double>(count); };
+    constexpr std::size_t kFewest = 3;
+    if (count < kFewest) {
+      return;
+    }
+    const bool is_known = size.x > 0 && !(c_.display && c_.display->evidence == Evidence::statistics);
+    if (percent(negative) > 25) {
+      add({"origin", "the positions count from the center of the display rather than from its top left",
+           fmt::format("{:.0f} % of them are negative{}", percent(negative),
+                       is_known
+                           ? fmt::format(", and {:.0f} % lie beside the display; counted from its center, {:.0f} %",
+                                         percent(beside), percent(beside_center))
+                           : ""),
+           "`gaze-origin` center"},
+          Evidence::statistics);
+    } else if (is_known && percent(beside) > 50 && raw_.is_own_table) {
+      add({"beside-the-display", "most positions lie beside the display: its size, the unit or the origin is wrong",
+           fmt::format("{:.0f} % of them lie beside it{}", percent(beside),
+                       is_px ? fmt::format(", which has {:.0f}x{:.0f} px", size.x, size.y) : ""),
+           is_px ? "`screen-px` or `gaze-origin` top-left" : "`gaze-unit` or `gaze-origin` top-left"},
+          Evidence::header);
+    }
+  }
+
+  // Numbers that are called degrees, and whose saccades last far too long for their size.
+  void degrees() {
+    if (c_.unit.value != PositionUnit::deg || c_.unit.evidence == Evidence::statistics) {
+      return;
+    }
+    const auto motion = measure_motion(measurable_rows(raw_, c_), raw_);
+    const auto factor = motion ? motion->degrees_per_unit() : std::nullopt;
+    constexpr double kFarTooSmall = 6;
+    if (factor && *factor > kFarTooSmall * c_.unit_scale && motion->most() < 5) {
+      add({"position-unit", "the positions can hardly be degrees",
+           fmt::format("{}; {}", motion->in_words(), motion->if_degrees(1)), "`gaze-unit` norm, height or rad"},
+          c_.unit.evidence);
+    }
+  }
+
+  void directions() {
+    std::size_t count = 0;
+    std::size_t backwards = 0;
+    std::size_t coarse = 0;
+    std::vector<double> aside;
+    std::vector<double> lengths;
+    const std::size_t stride = raw_.rows.size() / kMostLookedAt + 1;
+    for (std::size_t i = 0; i < raw_.rows.size(); i += stride) {
+      const RawSample row = raw_.rows[i];
+      const Vec3d d = from_axes(vector_of(row, c_), c_.axes.value);
+      if (!is_usable(row.validity) || !is_finite(d) || !(length(d) > 0)) {
+        continue;
+      }
+      ++count;
+      backwards += d.z > 0 ? 1 : 0;
+      aside.push_back(std::acos(std::clamp(-d.z / length(d), -1.0, 1.0)) * kDegPerRad);
+      lengths.push_back(length(d));
+      const auto has_one_decimal = [](double value) { return std::abs(10 * value - std::round(10 * value)) < 1e-9; };
+      coarse += has_one_decimal(d.x) && has_one_decimal(d.y) && has_one_decimal(d.z) ? 1 : 0;
+    }
+    constexpr std::size_t kFewest = 10;
+    if (count < kFewest && (count < 2 || backwards < count)) {
+      return;
+    }
+    const double length = lower_quantile(lengths, 0.5);
+    const double least = lower_quantile(lengths, 0.1);
+    const double most = lower_quantile(lengths, 0.9);
+    if (!raw_.are_points && count >= kFewest && (least < 0.85 || most > 1.15)) {
+      add({"no-unit-vectors", "these are no directions but points or positions",
+           fmt::format("their lengths are {:.3g} in the median, 80 % of them {:.3g} to {:.3g}, and a direction has the "
+                       "length 1",
+                       length, least, most),
+           "`gaze-x-column` and `gaze-y-column`"},
+          Evidence::header);
+      return;
+    }
+    if (count >= kFewest && coarse * 10 > count * 9) {
+      doubts_.push_back({"coarse",
+                         "the log is too coarse for anything but a glance: its directions come in steps of 0.1, which "
+                         "are 5.7 degrees",
+                         "the numbers have one decimal, as a vector's ToString() writes them; log all digits", "",
+                         false, false});
+    }
+    if (backwards * 2 > count) {
+      add({"axes",
+           fmt::format("the axes {}: {} of {} directions point backwards",
+                       c_.axes.evidence == Evidence::statistics ? "are undecided" : "can hardly be right", backwards,
+                       count),
+           fmt::format(
+               "in {} axes; they look ahead in unity (x to the right), in sranipal (x to the left) and in cv (y "
+               "down)",
+               to_string(c_.axes.value)),
+           "`gaze-axes` unity, sranipal or cv"},
+          c_.axes.evidence);
+    } else if (const double angle = lower_quantile(aside, 0.5); angle > kLargestAngle) {
+      add({"looks-aside", fmt::format("the eye would look {:.0f} degrees aside for most of the time", angle),
+           "the angle of the directions from straight ahead, in the median; an eye turns by 30 degrees",
+           "`gaze-axes`, `gaze-x-column` and `gaze-z-column`"},
+          Evidence::header);
+    }
+  }
+
+  const RawGaze& raw_;
+  const Conventions& c_;
+  const DisplayGeometry& display_;
+  std::vector<ReadingDoubt> doubts_;
+};
+
+}  // namespace
+
+UnitReading read_unit(const RawRows& rows, const RawGaze& raw, const DisplayGeometry& display) {
+  UnitReading reading;
+  const std::optional<EyeMotion> motion = measure_motion(rows, raw);
+  if (!motion) {
+    reading.unit = PositionUnit::fraction;
+    reading.evidence = "no usable value";
+    return reading;
+  }
+  const EyeMotion& m = *motion;
+  reading.evidence = m.in_words();
+  if (m.most() <= kAboutOne && m.share_negative >= kFewNegative) {
+    reading.unit = PositionUnit::norm;
+    reading.doubt = small_numbers_around_zero(m);
+  } else if (m.most() <= kAboutOne) {
+    reading.unit = PositionUnit::fraction;
+    reading.evidence += fmt::format("; as pixels the eye would move over {:.2g} of them, as degrees {}",
+                                    std::max(m.x.spread(), m.y.spread()), m.if_degrees(1));
+    reading.doubt = inferred(reading);
+  } else if (m.most() <= kLargestAngle) {
+    reading.unit = m.share_negative >= kFewNegative ? PositionUnit::deg : PositionUnit::px;
+    reading.doubt = numbers_of_angles(m);
+  } else {
+    const Vec2d px{static_cast<double>(display.width_px), static_cast<double>(display.height_px)};
+    const Vec2d mm{10 * display.width_cm, 10 * display.height_cm};
+    reading.unit = PositionUnit::px;
+    reading.evidence += fmt::format("; as degrees the eye would turn to {:.0f}", m.most());
+    const bool may_be_mm = lies_on(m, mm) && m.x.spread() > 0.4 * mm.x && m.x.spread() < 0.4 * px.x;
+    reading.is_plain = lies_on(m, px) && !may_be_mm;
+    if (may_be_mm) {
+      reading.doubt = ReadingDoubt{"position-unit", "the unit of x and y is undecided: pixels or millimetres?",
+                                   m.in_words() + ", and the display's size is known in both", "`gaze-unit` px or mm"};
+    } else if (!reading.is_plain) {
+      reading.doubt = inferred(reading);
+    }
+  }
+  return reading;
+}
+
+std::vector<ReadingDoubt> judge_reading(const RawGaze& raw, const Conventions& conventions,
+                                        const DisplayGeometry& display) {
+  return Judge(raw, conventions, display).doubts();
+}
+
+void refuse_doubt(const RawGaze& raw, const ReadingDoubt& doubt, const GazeReadOptions& options) {
+  const std::string problem = fmt::format("{} ({})", doubt.what, doubt.evidence);
+  throw Error(ErrorKind::input, raw.place.empty() ? raw.source : raw.place, problem,
+              options.accepts_inferred
+                  ? "give " + doubt.setting
+                  : fmt::format("state it once: gazetrace gaze import {} -o gaze.csv {}", raw.source, doubt.setting));
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazelog/stamps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/statistics.hpp"
+#include "gazelog/recordings.hpp"
+
+namespace gazetrace {
+namespace {
+
+std::string place_of(const GazeLog& log, std::int64_t row) {
+  return fmt::format("{}:{}", log.source, row);
+}
+
+bool is_same_position(const GazeSample& a, const GazeSample& b) {
+  const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+  return same(a.u, b.u) && same(a.v, b.v) && same(a.direction.x, b.direction.x) && same(a.direction.y, b.direction.y) &&
+         same(a.direction.z, b.direction.z);
+}
+
+}  // namespace
+
+std::string unordered_problem(const GazeOrder& order) {
+  return fmt::format("time {} ns is before that of line {} ({} ns)", order.first_backward_ns, order.row_before,
+                     order.before_ns);
+}
+
+std::string duplicate_problem(const GazeOrder& order) {
+  return fmt::format("time {} ns repeats that of line {}", order.first_duplicate_ns, order.row_repeated);
+}
+
+bool loses_much(const GazeOrder& order) {
+  constexpr double kFewPerCent = 0.03;
+  const std::size_t lost = order.duplicates - order.identical_duplicates;
+  return static_cast<double>(lost) > kFewPerCent * static_cast<double>(order.rows);
+}
+
+void order_samples(GazeLog& log, UnorderedPolicy policy) {
+  GazeOrder& order = log.order;
+  order.rows = log.samples.size();
+  for (std::size_t i = 1; i < log.samples.size(); ++i) {
+    const GazeSample& before = log.samples[i - 1];
+    const GazeSample& sample = log.samples[i];
+    if (sample.t_ns >= before.t_ns) {
+      continue;
+    }
+    if (order.backward_steps++ == 0) {
+      order.first_backward_row = sample.row;
+      order.first_backward_ns = sample.t_ns;
+      order.row_before = before.row;
+      order.before_ns = before.t_ns;
+    }
+    std::int64_t back_ns = 0;
+    if (__builtin_sub_overflow(before.t_ns, sample.t_ns, &back_ns)) {
+      back_ns = std::numeric_limits<std::int64_t>::max();
+    }
+    order.longest_backward_ns = std::max(order.longest_backward_ns, back_ns);
+  }
+  if (order.backward_steps > 0) {
+    if (policy == UnorderedPolicy::error) {
+      throw Error(ErrorKind::input, place_of(log, order.first_backward_row), unordered_problem(order),
+                  "sort the log, or use `gaze-order` sort");
+    }
+    std::stable_sort(log.samples.begin(), log.samples.end(),
+                     [](const GazeSample& a, const GazeSample& b) { return a.t_ns < b.t_ns; });
+    log.warnings.push_back(fmt::format("{}: sorted by time; {} {} backwards", log.source, order.backward_steps,
+                                       order.backward_steps == 1 ? "step went" : "steps went"));
+  }
+}
+
+void drop_duplicates(GazeLog& log, UnorderedPolicy policy) {
+  GazeOrder& order = log.order;
+  std::vector<GazeSample>& samples = log.samples;
+  std::size_t kept = 0;
+  std::size_t group = 0;  // index of the first kept row of the current time
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (kept > 0 && samples[kept - 1].t_ns != samples[i].t_ns) {
+      group = kept;
+    }
+    std::size_t twin = group;
+    while (twin < kept && samples[twin].eye != samples[i].eye) {
+      ++twin;
+    }
+    if (twin < kept) {
+      if (order.duplicates++ == 0) {
+        order.first_duplicate_row = samples[i].row;
+        order.first_duplicate_ns = samples[i].t_ns;
+        order.row_repeated = samples[twin].row;
+      }
+      order.identical_duplicates += is_same_position(samples[twin], samples[i]) ? 1 : 0;
+      samples[twin] = samples[i];
+      continue;
+    }
+    if (kept != i) {
+      samples[kept] = samples[i];
+    }
+    ++kept;
+  }
+  const std::size_t rows = samples.size();
+  samples.resize(kept);
+  if (order.duplicates > 0) {
+    if (policy == UnorderedPolicy::error) {
+      throw Error(ErrorKind::input, place_of(log, order.first_duplicate_row), duplicate_problem(order),
+                  loses_much(order) ? fmt::format("dropping repeats would keep only {} of {} rows: export again with "
+                                                  "stamps that differ, or look at it with 'gazetrace gaze inspect'",
+                                                  kept, rows)
+                                    : fmt::format("remove one of them, or use `gaze-order` sort, which keeps the last "
+                                                  "of equal stamps, {} of {} rows",
+                                                  kept, rows));
+    }
+    log.warnings.push_back(fmt::format("{}: {} {} dropped: the last row of equal times is kept", log.source,
+                                       order.duplicates, order.duplicates == 1 ? "duplicate was" : "duplicates were"));
+  }
+}
+
+namespace {
+
+// A step back in time: the index of the row behind it.
+struct BackwardStep {
+  std::size_t row;
+  std::int64_t before_ns, after_ns;
+};
+
+struct Stamps {
+  double step_ns = 0;  // median of those that grow
+  std::vector<BackwardStep> backward;
+  std::size_t pairs = 0;  // rows that repeat the time of the row before, of the same eye, at another place
+};
+
+Stamps look_at(const RawRows& rows) {
+  constexpr std::size_t kMostSteps = 5000;
+  Stamps stamps;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const std::int64_t before_ns = rows.t_ns(i - 1);
+    const std::int64_t t_ns = rows.t_ns(i);
+    if (t_ns < before_ns) {
+      stamps.backward.push_back({i, before_ns, t_ns});
+    } else if (t_ns == before_ns) {
+      stamps.pairs += rows.eye(i) == rows.eye(i - 1) && !(rows.at(i) == rows.at(i - 1)) ? 1 : 0;
+    } else if (steps.size() < kMostSteps) {
+      steps.push_back(static_cast<double>(t_ns) - static_cast<double>(before_ns));
+    }
+  }
+  stamps.step_ns = steps.empty() ? 0 : lower_quantile(steps, 0.5);
+  return stamps;
+}
+
+// 2^16 or 2^32 of the unit in which the file counts, where a step back is that; else 0.
+std::int64_t overflow_ns(const RawGaze& raw, const Stamps& stamps, const BackwardStep& step) {
+  std::int64_t unit_ns = 1;
+  for (int i = 0; i < raw.declared.time_exponent.value; ++i) {
+    unit_ns *= 10;
+  }
+  for (const int bits : {16, 32}) {
+    const double whole_ns = std::ldexp(static_cast<double>(unit_ns), bits);
+    const double on_ns = whole_ns - (static_cast<double>(step.before_ns) - static_cast<double>(step.after_ns));
+    if (whole_ns > 100 * stamps.step_ns && on_ns >= 0 && on_ns <= 10 * stamps.step_ns) {
+      return static_cast<std::int64_t>(whole_ns);
+    }
+  }
+  return 0;
+}
+
+template <class Change>
+void change_times(RawRows& rows, const Change& change) {
+  RawRows changed;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    RawSample row = rows[i];
+    row.t_ns = change(i, row.t_ns);
+    changed.push_back(row);
+  }
+  rows = std::move(changed);
+}
+
+void add_fault(RawGaze& raw, const std::string& code, std::size_t row, const std::string& problem,
+               const std::string& setting) {
+  raw.faults.push_back({code, fmt::format("{}:{}", raw.source, raw.rows[row].row), problem, "give " + setting, setting,
+                        fmt::format("line {}: {}", raw.rows[row].row, problem)});
+}
+
+// Whether rows from `step` on continue elsewhere in time, or were written twice: then they are out of order, and the
+// clock did not start anew.
+bool belongs_elsewhere(const RawRows& rows, const std::vector<BackwardStep>& steps, std::size_t step) {
+  constexpr std::int64_t kNearNs = 1'000'000'000;
+  const auto end_of = [&](std::size_t s) { return s + 1 < steps.size() ? steps[s + 1].row : rows.size(); };
+  const std::int64_t first_ns = steps[step].after_ns;
+  const std::int64_t last_ns = rows.t_ns(end_of(step) - 1);
+  std::size_t begin = 0;
+  for (std::size_t part = 0; part <= step; ++part) {
+    const std::size_t end = steps[part].row;
+    const std::int64_t part_first_ns = rows.t_ns(begin);
+    const std::int64_t part_last_ns = rows.t_ns(end - 1);
+    const bool overlaps = first_ns <= part_last_ns && last_ns >= part_first_ns;
+    if (!overlaps && (std::abs(part_first_ns - last_ns) < kNearNs || std::abs(first_ns - part_last_ns) < kNearNs)) {
+      return true;
+    }
+    for (std::size_t i = begin; overlaps && i < end; ++i) {
+      if (rows.t_ns(i) == first_ns && rows.at(i) == rows.at(steps[step].row)) {
+        return true;
+      }
+    }
+    begin = end;
+  }
+  return false;
+}
+
+void divide_at_restarts(RawGaze& raw, const Stamps& stamps) {
+  constexpr std::int64_t kLeastBackNs = 1'000'000'000;
+  constexpr std::size_t kRowsOfPart = 500;
+  const std::vector<BackwardStep>& steps = stamps.backward;
+  if (steps.empty() || steps.size() > std::max<std::size_t>(1, raw.rows.size() / kRowsOfPart) ||
+      !raw.recordings.empty()) {
+    return;
+  }
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    if (steps[s].before_ns - steps[s].after_ns < kLeastBackNs || belongs_elsewhere(raw.rows, steps, s)) {
+      return;
+    }
+  }
+  raw.clock_restarts_row = raw.rows[steps.front().row].row;
+  begin_recording(raw, "1", raw.rows[0].row);
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    begin_recording(raw, std::to_string(s + 2), raw.rows[steps[s].row].row);
+  }
+}
+
+}  // namespace
+
+std::string words_of_restart(const RawGaze& raw) {
+  return raw.clock_restarts_row == 0 ? "" : fmt::format("the clock starts again in line {}: ", raw.clock_restarts_row);
+}
+
+void mend_stamps(RawGaze& raw, UnorderedPolicy policy) {
+  if (raw.rows.size() < 2) {
+    return;
+  }
+  const Stamps stamps = look_at(raw.rows);
+  if (stamps.pairs * 20 > raw.rows.size() * 9) {
+    if (policy != UnorderedPolicy::pairs) {
+      add_fault(raw, "pairs", 1, "every time stands twice, at different places: the stamps are too coarse for the rate",
+                "`gaze-order` pairs");
+    } else {
+      const auto half_ns = static_cast<std::int64_t>(stamps.step_ns / 2);
+      const RawRows& rows = raw.rows;
+      bool is_second = false;
+      change_times(raw.rows, [&](std::size_t i, std::int64_t t_ns) {
+        is_second = i > 0 && !is_second && t_ns == rows.t_ns(i - 1);
+        return is_second ? t_ns + half_ns : t_ns;
+      });
+    }
+    return;
+  }
+  if (!stamps.backward.empty() && overflow_ns(raw, stamps, stamps.backward.front()) > 0) {
+    if (policy != UnorderedPolicy::unwrap) {
+      add_fault(raw, "counter-overflow", stamps.backward.front().row,
+                fmt::format("the counter of the clock overflowed: {} ns is followed by {} ns",
+                            stamps.backward.front().before_ns, stamps.backward.front().after_ns),
+                "`gaze-order` unwrap");
+    } else {
+      auto step = stamps.backward.begin();
+      std::int64_t added_ns = 0;
+      change_times(raw.rows, [&](std::size_t i, std::int64_t t_ns) {
+        if (step != stamps.backward.end() && step->row == i) {
+          added_ns += overflow_ns(raw, stamps, *step);
+          ++step;
+        }
+        return t_ns + added_ns;
+      });
+    }
+    return;
+  }
+  if (policy != UnorderedPolicy::sort) {
+    divide_at_restarts(raw, stamps);
+  }
+}
+
+void align_origins(GazeLog& log) {
+  if (log.origins.empty()) {
+    return;
+  }
+  constexpr float kNanF = std::numeric_limits<float>::quiet_NaN();
+  std::vector<EyeOrigins> by_time = std::move(log.origins);
+  std::stable_sort(by_time.begin(), by_time.end(),
+                   [](const EyeOrigins& a, const EyeOrigins& b) { return a.t_ns < b.t_ns; });
+  log.origins.clear();
+  log.origins.reserve(log.samples.size());
+  auto at = by_time.begin();
+  for (const GazeSample& sample : log.samples) {
+    EyeOrigins joined{{kNanF, kNanF, kNanF}, {kNanF, kNanF, kNanF}, sample.t_ns};
+    for (; at != by_time.end() && at->t_ns <= sample.t_ns; ++at) {
+      if (at->t_ns == sample.t_ns) {
+        joined.left_mm = std::isnan(at->left_mm.x) ? joined.left_mm : at->left_mm;
+        joined.right_mm = std::isnan(at->right_mm.x) ? joined.right_mm : at->right_mm;
+      }
+    }
+    log.origins.push_back(joined);
+  }
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""No guess reaches a picture: real recordings are written as tables of one's own under each unit, origin and axes, once
+without a word about them and once with a false statement. Without a word a table must be refused or read right; a false
+statement must be refused or named, or stands among those that no data tell apart (docs/gaze.md). Ends with 1 otherwise.
+
+  tests/benchmarks/gaze_readings.py build/dev/bin/gazetrace ../shared/gaze-samples
+"""
+
+import csv
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+SCREENS = ["arff/gaze.arff", "eyelink-asc/mono500.asc", "eyelink-asc/bino1000_blinks.asc", "tobii-studio-tsv/data.tsv",
+           "smi-iview-txt/recording1_Samples.txt", "bids/derived-tx300/sub-01_task-view_recording-eye1_physio.tsv.gz"]
+HEADS = ["pico-neo3-pro/boxing_VR.csv", "vive-pro-eye/TESTNA01_2D_Fist3.csv", "vive-pro-eye/TESTNA01_360VR_Fist3.csv"]
+WIDTH, HEIGHT = 1920, 1080
+ROWS = 6000
+# What a place in fractions is in each unit and origin, and the options that state it.
+PLACES = {
+    "fraction": (lambda u, v: (u, v), ["--gaze-unit", "fraction"]),
+    "fraction from the bottom left": (lambda u, v: (u, 1 - v), ["--gaze-unit", "fraction", "--gaze-origin", "bottom-left"]),
+    "px": (lambda u, v: (u * WIDTH, v * HEIGHT), ["--gaze-unit", "px"]),
+    "px from the bottom left": (lambda u, v: (u * WIDTH, (1 - v) * HEIGHT), ["--gaze-unit", "px", "--gaze-origin", "bottom-left"]),
+    "px from the center": (lambda u, v: ((u - .5) * WIDTH, (.5 - v) * HEIGHT), ["--gaze-unit", "px", "--gaze-origin", "center"]),
+    "norm": (lambda u, v: (2 * u - 1, 1 - 2 * v), ["--gaze-unit", "norm"]),
+    "height": (lambda u, v: ((u - .5) * WIDTH / HEIGHT, .5 - v), ["--gaze-unit", "height"]),
+    "cm from the center": (lambda u, v: ((u - .5) * 51, (.5 - v) * 29), ["--gaze-unit", "cm", "--gaze-origin", "center"]),
+    "deg": (lambda u, v: ((u - .5) * 45, (.5 - v) * 25), ["--gaze-unit", "deg"]),
+    "rad": (lambda u, v: ((u - .5) * .785, (.5 - v) * .436), ["--gaze-unit", "rad"]),
+}
+AXES = {"gl": lambda x, y, z: (x, y, z), "unity": lambda x, y, z: (x, y, -z), "sranipal": lambda x, y, z: (-x, y, -z),
+        "cv": lambda x, y, z: (x, -y, -z)}
+SCREEN = ["--screen-px", f"{WIDTH},{HEIGHT}", "--screen-cm", "51,29", "--screen-distance-cm", "60"]
+# Pairs of a truth and a statement that no data tell apart: mirrored pictures, and scales near each other.
+ALIKE = [{"fraction", "fraction from the bottom left"}, {"px", "px from the bottom left"}, {"norm", "height"},
+         {"cm from the center", "deg"}, {"unity", "sranipal", "cv"}]
+
+
+def rows_of(path):
+    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
+    rows = [row for row in csv.DictReader(lines) if row["valid"] in ("ok", "off_screen")]
+    eye = rows[0]["eye"]
+    return [row for row in rows if row["eye"] == eye][:ROWS]
+
+
+class Readings:
+    def __init__(self, program, samples, folder):
+        self.program, self.samples, self.folder = program, samples, folder
+        self.silent, self.counts = [], {}
+
+    def run(self, *arguments):
+        return subprocess.run([self.program, *map(str, arguments)], capture_output=True, text=True, check=False)
+
+    def truth(self, name):
+        out = self.folder / "truth.csv"
+        result = self.run("gaze", "import", self.samples / name, "-o", out, "--overwrite")
+        assert result.returncode == 0, result.stderr
+        return rows_of(out)
+
+    def judge(self, name, true, said, options, is_alike):
+        """Refused, named, right, or silent and wrong."""
+        result = self.run("gaze", "events", self.folder / "table.csv", *SCREEN, *options, "-o", self.folder / "events.tsv")
+        (self.folder / "events.tsv").unlink(missing_ok=True)
+        doubts = [line for line in result.stderr.splitlines() if "table.csv" in line and "guessed from its steps" not in line]
+        what = "refused" if result.returncode else "right" if true == said else "named" if doubts else "alike" if is_alike else "silent"
+        self.counts[what] = self.counts.get(what, 0) + 1
+        if what == "silent":
+            self.silent.append(f"{name}: {true}, read as {said or 'it stands'}")
+
+    def table(self, header, rows):
+        (self.folder / "table.csv").write_text(header + "\n" + "".join(",".join(f"{x:.7g}" if i else str(x) for i, x in enumerate(row)) + "\n" for row in rows))
+
+    def screens(self):
+        for name in SCREENS:
+            rows = [(int(r["t[ns]"]), float(r["u[1]"]), float(r["v[1]"])) for r in self.truth(name)]
+            for true, (write, options) in PLACES.items():
+                self.table("t[ns],x,y", [(t, *write(u, v)) for t, u, v in rows])
+                # Plain pixels of a stated display are certain; from the bottom left nothing tells them apart.
+                self.judge(name, true, "px" if true == "px" else "", [], true == "px from the bottom left")
+                for said, (_, statement) in PLACES.items():
+                    self.judge(name, true, said, statement, any(true in pair and said in pair for pair in ALIKE))
+
+    def heads(self):
+        for name in HEADS:
+            rows = [(int(r["t[ns]"]), *(float(r[d]) for d in ("dx", "dy", "dz"))) for r in self.truth(name)]
+            for true, turn in AXES.items():
+                self.table("t[ns],dir_x,dir_y,dir_z", [(t, *turn(x, y, z)) for t, x, y, z in rows])
+                self.judge(name, true, "gl" if true == "gl" else "", [], False)
+                for said in AXES:
+                    self.judge(name, true, said, ["--gaze-axes", said], any(true in pair and said in pair for pair in ALIKE))
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        readings = Readings(Path(sys.argv[1]).resolve(), Path(sys.argv[2]), Path(folder))
+        readings.screens()
+        readings.heads()
+    print(f"{sum(readings.counts.values())} readings: " + ", ".join(f"{n} {what}" for what, n in sorted(readings.counts.items())))
+    for line in readings.silent:
+        print("wrong in silence: " + line)
+    return 1 if readings.silent else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// Each kind of file that could be read wrong in silence: it is refused with the option that answers the question, and
+// with it the true gaze results. The eye is made here: fixations of 400 ms and saccades of 40 ms along a minimum-jerk
+// path.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "gazetrace/gaze_events.hpp"
+#include "gazetrace/gaze_inspect.hpp"
+#include "gazetrace/gaze_read.hpp"
+#include "support/text_file.hpp"
+
+namespace gazetrace {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::ThrowsMessage;
+
+constexpr std::array<Vec2d, 7> kPlaces{
+    {{.20, .30}, {.75, .25}, {.60, .80}, {.15, .70}, {.50, .50}, {.85, .55}, {.35, .15}}};
+constexpr int kRateHz = 120;
+
+Vec2d place_at(int i) {
+  constexpr int kRest = 48;    // samples of a fixation
+  constexpr int kSaccade = 5;  // and of a saccade
+  const int n = i / (kRest + kSaccade);
+  const int k = std::max(0, i % (kRest + kSaccade) - kRest);
+  const Vec2d& from = kPlaces[static_cast<std::size_t>(n) % kPlaces.size()];
+  const Vec2d& to = kPlaces[static_cast<std::size_t>(n + 1) % kPlaces.size()];
+  const double s = static_cast<double>(k) / kSaccade;
+  const double share = s * s * s * (10 - 15 * s + 6 * s * s);
+  const double wobble = 2e-4 * std::sin(2.1 * i);  // noise that no row repeats
+  return {from.x + share * (to.x - from.x) + wobble, from.y + share * (to.y - from.y) - wobble};
+}
+
+using Write = std::function<std::string(const Vec2d&)>;
+std::string table(const std::string& header, const Write& write, int rows = 480) {
+  std::string text = header + "\n";
+  for (int i = 0; i < rows; ++i) {
+    text += fmt::format("{:.4f},{}\n", static_cast<double>(i) / kRateHz, write(place_at(i)));
+  }
+  return text;
+}
+
+class GazeJudge : public ::testing::Test {
+ protected:
+  GazeLog read(const std::string& text) {
+    options_.display = DisplayGeometry{.width_px = 1920, .height_px = 1080};
+    return load_gaze_log(files_.write("log.csv", text), options_);
+  }
+  void expect_refused(const std::string& text, const std::string& words) {
+    EXPECT_THAT([&] { read(text); }, ThrowsMessage<Error>(HasSubstr(words))) << text.substr(0, 200);
+  }
+  GazeInspection inspect(const std::string& text, const std::string& name = "seen.csv") {
+    return inspect_gaze(load_for_inspection(files_.write(name, text), options_), {});
+  }
+  void expect_true(const GazeLog& log) {
+    for (const int i : {10, 100, 300}) {
+      EXPECT_NEAR(log.samples[static_cast<std::size_t>(i)].u, place_at(i).x, 1e-3);
+      EXPECT_NEAR(log.samples[static_cast<std::size_t>(i)].v, place_at(i).y, 1e-3);
+    }
+  }
+  TextFiles files_;
+  GazeReadOptions options_;
+};
+
+TEST_F(GazeJudge, UnitsOfPsychoPyAreNeverDegreesByGuess) {
+  const std::string height = table("time[s],gaze_x,gaze_y", [](const Vec2d& p) {
+    return fmt::format("{:.5f},{:.5f}", (p.x - 0.5) * 16 / 9, 0.5 - p.y);
+  });
+  const std::string norm = table("time[s],gaze_x,gaze_y",
+                                 [](const Vec2d& p) { return fmt::format("{:.5f},{:.5f}", 2 * p.x - 1, 1 - 2 * p.y); });
+  expect_refused(height, "`gaze-unit` height, norm, deg or rad");
+  expect_refused(norm, "`gaze-unit` norm, deg or rad");
+  options_.columns.position_unit = PositionUnit::height;
+  expect_true(read(height));
+  options_.columns.position_unit = PositionUnit::norm;
+  expect_true(read(norm));
+  // Called degrees, its saccades last too long for their size.
+  options_.columns.position_unit = PositionUnit::deg;
+  EXPECT_THAT(inspect(norm).verdict, Not(HasSubstr("nothing suspicious")));
+}
+
+TEST_F(GazeJudge, CentredPixels) {
+  const std::string text = table(
+      "t[s],x,y", [](const Vec2d& p) { return fmt::format("{:.1f},{:.1f}", 1920 * (p.x - 0.5), 1080 * (0.5 - p.y)); });
+  expect_refused(text, "`gaze-origin` center");
+  options_.columns.origin = PositionOrigin::center;
+  expect_true(read(text));
+}
+
+TEST_F(GazeJudge, VectorsByTheColumnBesideThem) {
+  const auto vector = [](const Vec2d& p, const char* pattern) {
+    const Vec3d d = normalize(Vec3d{p.x - 0.5, 0.5 - p.y, 1});
+    return fmt::format(fmt::runtime(pattern), d.x, d.y, d.z);
+  };
+  const std::string fine =
+      table("t[s],gaze_x,gaze_y,gaze_z", [&](const Vec2d& p) { return vector(p, "{:.6f},{:.6f},{:.6f}"); });
+  expect_refused(fine, "`gaze-axes` unity, sranipal or cv");
+  options_.columns.axes = GazeAxes::unity;
+  const GazeLog log = read(fine);
+  EXPECT_EQ(log.kind, GazeKind::direction);
+  EXPECT_NEAR(log.samples[10].direction.x / -log.samples[10].direction.z, place_at(10).x - 0.5, 1e-4);
+  EXPECT_THAT(
+      inspect(table("t[s],gaze_x,gaze_y,gaze_z", [&](const Vec2d& p) { return vector(p, "{:.1f},{:.1f},{:.1f}"); }))
+          .findings.front()
+          .code,
+      "coarse");
+  // In one cell, quoted or not.
+  EXPECT_EQ(read(table("t[s],gaze_direction,note",
+                       [&](const Vec2d& p) { return vector(p, "\"({:.6f}, {:.6f}, {:.6f})\",x"); }))
+                .samples[10]
+                .direction,
+            log.samples[10].direction);
+}
+
+TEST_F(GazeJudge, RadiansAreAUnit) {
+  const GazeLog log = [&] {
+    options_.frame = GazeFrame::head;
+    return read(table("t[s],yaw[rad],pitch[rad]", [](const Vec2d& p) {
+      return fmt::format("{:.6f},{:.6f}", 0.5 * (p.x - 0.5), 0.5 * (0.5 - p.y));
+    }));
+  }();
+  EXPECT_NEAR(log.samples[10].direction.x / -log.samples[10].direction.z, std::tan(0.5 * (place_at(10).x - 0.5)), 1e-5);
+}
+
+TEST_F(GazeJudge, ValidityThatIsReadTheWrongWayRound) {
+  std::string text = "t[ms],x[px],y[px],validity\n";
+  for (int i = 0; i < 200; ++i) {
+    const bool is_lost = i % 10 == 9;
+    const Vec2d p = is_lost ? Vec2d{} : place_at(i);
+    text += fmt::format("{},{:.1f},{:.1f},{}\n", 8 * i, 1920 * p.x, 1080 * p.y, is_lost ? 1 : 0);
+  }
+  expect_refused(text, "`gaze-valid-values` 0");
+  options_.columns.valid_values = {"0"};
+  EXPECT_NEAR(read(text).samples[5].u, place_at(5).x, 1e-3);
+}
+
+TEST_F(GazeJudge, ACombinedGazeThatIsTheSumOfTheEyes) {
+  const std::string text = table("t[s],GazeXLeft,GazeYLeft,GazeXRight,GazeYRight,GazeX,GazeY", [](const Vec2d& p) {
+    return fmt::format("{0:.4f},{1:.4f},{0:.4f},{1:.4f},{2:.4f},{3:.4f}", p.x, p.y, 2 * p.x, 2 * p.y);
+  });
+  expect_refused(text, "`gaze-x-column` GazeXLeft `gaze-y-column` GazeYLeft");
+}
+
+TEST_F(GazeJudge, DisplaySizesOfBlocks) {
+  const auto block = [](int begin, int width, int height) {
+    std::string text = fmt::format(
+        "MSG\t{} GAZE_COORDS 0 0 {} {}\nSTART\t{} \tLEFT\tSAMPLES\tEVENTS\n"
+        "SAMPLES\tGAZE\tLEFT\tRATE\t250.00\tTRACKING\tCR\n",
+        begin - 10, width - 1, height - 1, begin);
+    for (int i = 0; i < 50; ++i) {
+      text += fmt::format("{}\t{:.1f}\t{:.1f}\t800.0\t...\n", begin + 4 * i, 0.25 * width, 0.5 * height);
+    }
+    return text + fmt::format("END\t{} \tSAMPLES\tEVENTS\tRES\t 40.00\t 40.00\n", begin + 200);
+  };
+  options_ = {};
+  const std::string head = "** CONVERTED FROM a.edf\n** EYELINK II\n";
+  const std::string path = files_.write("two.asc", head + block(1000, 1920, 1080) + block(5000, 1024, 768));
+  EXPECT_THAT([&] { load_gaze_log(path, options_); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("from 1920x1080 to 1024x768"), HasSubstr("`gaze-recording` 1"))));
+  options_.recording = "2";
+  EXPECT_EQ(load_gaze_log(path, options_).samples[0].u, 0.25);
+  // A size in place of the last pixel, as some programs write it.
+  options_ = {};
+  const GazeLog log = load_gaze_log(files_.write("size.asc", head + block(1000, 1281, 1025)), options_);
+  EXPECT_EQ(log.recording_geometry->width_px, 1280);
+  EXPECT_EQ(log.recording_geometry->height_px, 1024);
+}
+
+TEST_F(GazeJudge, ClocksThatStartAgainOverflowOrStandTwice) {
+  const auto rows = [](const std::function<double(int)>& ms) {
+    std::string text = "t[ms],u,v\n";
+    for (int i = 0; i < 1200; ++i) {
+      const Vec2d p = place_at(i);
+      text += fmt::format("{:.0f},{:.5f},{:.5f}\n", ms(i), p.x, p.y);
+    }
+    return text;
+  };
+  const std::string again = rows([](int i) { return i < 600 ? 90'000 + 8 * i : 8 * (i - 600); });
+  EXPECT_THAT([&] { read(again); }, ThrowsMessage<Error>(AllOf(HasSubstr("starts again in line 602"),
+                                                               HasSubstr("2 recordings"), Not(HasSubstr("sort")))));
+  options_.recording = "2";
+  EXPECT_EQ(read(again).samples.size(), 600U);
+  options_.recording = "";
+  const std::string overflow = rows([](int i) { return std::fmod(60'000 + 8.0 * i, 65'536); });
+  expect_refused(overflow, "`gaze-order` unwrap");
+  options_.unordered = UnorderedPolicy::unwrap;
+  const GazeLog unwrapped = read(overflow);
+  EXPECT_EQ(unwrapped.samples.back().t_ns - unwrapped.samples.front().t_ns, 1199LL * 8'000'000);
+  options_.unordered = UnorderedPolicy::error;
+  const std::string pairs = rows([](int i) { return 5000.0 + i / 2; });
+  expect_refused(pairs, "`gaze-order` pairs");
+  options_.unordered = UnorderedPolicy::pairs;
+  EXPECT_EQ(read(pairs).samples[1].t_ns - read(pairs).samples[0].t_ns, 500'000);
+}
+
+TEST_F(GazeJudge, RowsThatAreNoGaze) {
+  std::string text = "t[ms],EventSource,u,v,heart\n";
+  for (int i = 0; i < 100; ++i) {
+    const Vec2d p = place_at(i);
+    text += fmt::format("{},1,{:.4f},{:.4f},\n{},2,,,71\n", 8 * i, p.x, p.y, 8 * i + 3);
+    text += i == 50 ? "402,trial starts\n" : "";
+  }
+  const GazeLog log = read(text);
+  EXPECT_EQ(log.samples.size(), 100U);
+  ASSERT_EQ(log.events.size(), 1U);
+  EXPECT_EQ(log.events[0].text, "trial starts");
+  EXPECT_EQ(log.events[0].begin_ns, 402'000'000);
+}
+
+TEST_F(GazeJudge, FilesOfOtherKindsAreNamedWithTheWayOut) {
+  for (const auto& [content, words] : std::vector<std::pair<std::string, std::string>>{
+           {"SR_RESEARCH_COMBINED_FILE\n\x01", "edf2asc"},
+           {"\x89HDF\r\n\x1a\n....", "HDF5"},
+           {std::string("PK\x03\x04....", 8), "xlsx"},
+           {"PAR1....", "Parquet"},
+           {"MATLAB 5.0 MAT-file, Platform", "MATLAB"},
+           {"{\"time\": 1, \"x\": 2}\n{\"time\": 2, \"x\": 3}\n", "JSON"},
+           {"# Title\n\nSome words, and more\nof them.\nAnd more,\nand more\n", "a text without rows of numbers"}}) {
+    EXPECT_THAT([&] { load_gaze_log(files_.write("file.bin", content), {}); }, ThrowsMessage<Error>(HasSubstr(words)));
+  }
+}
+
+TEST_F(GazeJudge, PlainFilesStayPlain) {
+  const std::string px =
+      table("time,x,y", [](const Vec2d& p) { return fmt::format("{:.1f},{:.1f}", 1920 * p.x, 1080 * p.y); });
+  expect_true(read(px));
+  const std::string fractions =
+      table("time,x,y", [](const Vec2d& p) { return fmt::format("{:.5f},{:.5f}", p.x, p.y); });
+  expect_refused(fractions, "`gaze-unit` fraction");
+  options_.accepts_inferred = true;  // the importer takes what only one reading fits
+  expect_true(read(fractions));
+}
+
+}  // namespace
+}  // namespace gazetrace
