@@ -103,6 +103,9 @@ void refuse_foreign_file(const GazeFile& file) {
                 fmt::format("write it as CSV with a column of time and columns of gaze{}",
                             names.empty() ? "" : "; its names are: " + names));
   }
+}
+
+void refuse_prose(const GazeFile& file) {
   if (is_prose(file)) {
     refuse_kind(file, "a text without rows of numbers", "give a table of time and gaze, as CSV or TSV with a header");
   }

@@ -5,8 +5,10 @@
 
 namespace gazetrace {
 
-// Throws Error(input) for a file that no reader of gaze understands, naming what it is and the way out: binary
-// recordings, archives, JSON, and texts that are no table. For files that no format claims.
+// For files that no format claims. Throws Error(input) naming what the file is and the way out: binary recordings,
+// archives, JSON.
 void refuse_foreign_file(const GazeFile& file);
+// Likewise for texts that are no table.
+void refuse_prose(const GazeFile& file);
 
 }  // namespace gazetrace

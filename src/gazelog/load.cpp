@@ -158,6 +158,9 @@ RawGaze read_opened(GazeFile& file, const std::string& path, const GazeReadOptio
   }
   refuse_other_tables(file, !options.format.empty());
   refuse_thousands(file);
+  if (confidence < 0.8) {
+    refuse_prose(file);
+  }
   const std::optional<RawFault> commas = join_decimal_commas(file, options, mending);
   RawGaze raw = format->read(file, options);
   if (commas) {

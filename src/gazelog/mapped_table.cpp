@@ -323,6 +323,8 @@ void declare_positions(RawGaze& raw, const ColumnPlan& plan, const GazeFile& fil
                   is_default ? Evidence::format : declared},
                  place);
   raw.directions_grow_up = true;
+  const std::string x_name = letters_and_digits(table.headings[plan.sources.front().x].name);
+  raw.declared.degrees_are_directions = x_name == "yaw" || x_name == "azimuth";  // angles of the eye, on no display
 }
 
 }  // namespace

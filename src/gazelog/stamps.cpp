@@ -20,8 +20,15 @@ std::string place_of(const GazeLog& log, std::int64_t row) {
   return fmt::format("{}:{}", log.source, row);
 }
 
+bool same(double x, double y) {
+  return x == y || (std::isnan(x) && std::isnan(y));
+}
+
+bool is_same_place(const Vec3d& a, const Vec3d& b) {
+  return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z);
+}
+
 bool is_same_position(const GazeSample& a, const GazeSample& b) {
-  const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
   return same(a.u, b.u) && same(a.v, b.v) && same(a.direction.x, b.direction.x) && same(a.direction.y, b.direction.y) &&
          same(a.direction.z, b.direction.z);
 }
@@ -145,7 +152,7 @@ Stamps look_at(const RawRows& rows) {
     if (t_ns < before_ns) {
       stamps.backward.push_back({i, before_ns, t_ns});
     } else if (t_ns == before_ns) {
-      stamps.pairs += rows.eye(i) == rows.eye(i - 1) && !(rows.at(i) == rows.at(i - 1)) ? 1 : 0;
+      stamps.pairs += rows.eye(i) == rows.eye(i - 1) && !is_same_place(rows.at(i), rows.at(i - 1)) ? 1 : 0;
     } else if (steps.size() < kMostSteps) {
       steps.push_back(static_cast<double>(t_ns) - static_cast<double>(before_ns));
     }
@@ -204,7 +211,7 @@ bool belongs_elsewhere(const RawRows& rows, const std::vector<BackwardStep>& ste
       return true;
     }
     for (std::size_t i = begin; overlaps && i < end; ++i) {
-      if (rows.t_ns(i) == first_ns && rows.at(i) == rows.at(steps[step].row)) {
+      if (rows.t_ns(i) == first_ns && is_same_place(rows.at(i), rows.at(steps[step].row))) {
         return true;
       }
     }

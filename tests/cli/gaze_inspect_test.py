@@ -320,7 +320,8 @@ class Doctor(harness.CliTest):
         rows = "".join(f"{t},{0.2 + 0.0001 * t + 0.1 * part},0.5\n" for part in (0, 1) for t in range(part, 4000, 2))
         self.write("log.csv", "t[ms],u[1],v[1]\n" + rows)
         finding = self.accused(self.inspect("log.csv"))[0]
-        self.assertEqual((finding["code"], finding["flag"]), ("clock-restarts", None))
+        self.assertEqual((finding["code"], finding["flag"]), ("several-recordings", "--gaze-recording 1"))
+        self.assertIn("starts again in line 2002", finding["what"])
 
     # -- decimal commas
 

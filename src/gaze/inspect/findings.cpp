@@ -417,7 +417,8 @@ class Doctor {
     }
     const std::size_t beside = loss.by_validity[static_cast<std::size_t>(GazeValidity::off_screen)];
     if (share(beside) > 0.2 && !has_finding({"origin", "beside-the-display"})) {
-      add(share(beside) > 0.5 ? FindingKind::suspicion : FindingKind::note, "off-screen",
+      add(share(beside) > 0.5 && !has_finding({"position-unit"}) ? FindingKind::suspicion : FindingKind::note,
+          "off-screen",
           fmt::format("{:.1f} % of the samples lie beside the display, most of them {} it", 100 * share(beside),
                       side_of_most()),
           "positions outside 0..1 of the display: did the viewer look there, and is this the display of the "

@@ -476,7 +476,7 @@ class AscReader {
       }
       return;
     }
-    if (is_bare_ && !options_.display && !options_.guess_display) {
+    if (is_bare_ && !options_.display && !options_.fallback_display && !options_.guess_display) {
       throw Error(ErrorKind::input, file_.path,
                   "holds EyeLink samples without a header, as edf2asc writes them without messages: the size of the "
                   "display is not in it",

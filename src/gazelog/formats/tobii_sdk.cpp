@@ -67,7 +67,7 @@ std::vector<SdkEye> find_eyes(const DelimitedTable& table, const std::string& pl
 double sniff_gaze_tobii_sdk(const GazeFile& file) {
   const std::string_view head = head_of(file, 4096);
   const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };
-  if (!has("gaze_point_on_display_area")) {
+  if (!has("gaze_point_on_display_area") || head.starts_with('{') || head.starts_with('[')) {
     return 0.0;
   }
   return has("device_time_stamp") || has("system_time_stamp") ? 0.98 : 0.5;
