@@ -310,7 +310,8 @@ GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options) {
     }
     GazeLog log = interpret(raw, conventions);
     for (const ReadingDoubt& doubt : conventions.doubts) {
-      log.warnings.push_back(fmt::format("{}: {} ({})", path, doubt.what, doubt.evidence));
+      log.warnings.push_back(fmt::format("{}: {} ({}){}", path, doubt.what, doubt.evidence,
+                                         doubt.setting.empty() ? "" : "; give " + doubt.setting));
     }
     return log;
   });
