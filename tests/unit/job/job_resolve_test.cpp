@@ -16,8 +16,8 @@
 namespace gazetrace {
 namespace {
 
-using testing::HasSubstr;
 using testing::AllOf;
+using testing::HasSubstr;
 using testing::Not;
 
 constexpr std::int64_t kFirstNs = 1698682600011534600;  // 30 October 2023
