@@ -65,11 +65,11 @@ def with_json_joined(words):
     return joined
 
 
-def json_file(given, overwrite):
+def json_file(given, overwrite, read=()):
     """The file that --json names; None for none, or for stdout."""
     path = Path(given) if given not in (None, "-") else None
     if path:
-        check_output(path, overwrite)
+        check_output(path, overwrite, read)
     return path
 
 
@@ -81,7 +81,10 @@ def say(text, result, given):
     print(result if given == "-" else text, end="")
 
 
-def check_output(path, overwrite):
+def check_output(path, overwrite, read=()):
+    """`read`: files that are no output, whatever is overwritten."""
+    if any(os.path.exists(path) and os.path.exists(other) and os.path.samefile(path, other) for other in read):
+        raise Problem(f"{path}: is what is reported on; name another file")
     if path.exists() and not overwrite:
         raise Problem(f"{path}: exists already; give --overwrite to replace it")
     if path.is_dir():

@@ -66,8 +66,8 @@ def main(words):
         raise Problem("--heat-sigma: must be above 0 and at most 45 degrees")
     if not rest:
         raise Problem("name a gaze log; see 'gazetrace gaze report --help'")
-    check_output(arguments.output, arguments.overwrite)
-    json_file(arguments.json, arguments.overwrite)
+    check_output(arguments.output, arguments.overwrite, rest)
+    json_file(arguments.json, arguments.overwrite, [*rest, arguments.output])
     import pandas
     from . import gaze_diagrams, gaze_page
     seen = picture(arguments.frame_image)

@@ -27,8 +27,8 @@ def main(words):
     from .results import Results
     results = Results(arguments.results)
     output = arguments.output or results.folder / "report.html"
-    check_output(output, arguments.overwrite)
-    json_file(arguments.json, arguments.overwrite)
+    check_output(output, arguments.overwrite, [results.file])
+    json_file(arguments.json, arguments.overwrite, [results.file, output])
     said, warnings = make(results, output, arguments.plots, arguments.max_mib)
     for warning in warnings:
         print(f"gazetrace: warning: {warning}", file=sys.stderr)

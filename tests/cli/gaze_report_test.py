@@ -40,6 +40,7 @@ class GazeReport(reports.ReportTest):
         self.assertNotIn("To be checked", page)
         self.refused(main, ["log.csv", "-o", "page.html"], ["exists already"])
         self.refused(main, ["log.csv", "-o", "other.html", "--heat-sigma", "0"], ["--heat-sigma"])
+        self.refused(main, ["log.csv", "-o", "log.csv", "--overwrite"], ["log.csv", "name another file"])
         self.assertEqual(self.report(main, "none.csv", "-o", "other.html")[2], 2)
         # The page's numbers are those of the measurement.
         quality, events = reports.Page(page).tables

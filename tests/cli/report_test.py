@@ -204,6 +204,9 @@ class Report(reports.ReportTest):
         refused([".", "-o", "file/in/it.html"], ["file/in/it.html: cannot be written"], 3)
         self.write("report.html", "mine")
         refused(["."], ["report.html", "--overwrite"])
+        refused([".", "-o", "results.json", "--overwrite"], ["results.json", "name another file"])
+        refused([".", "--json", "results.json", "--overwrite"], ["results.json", "name another file"])
+        self.assertEqual(json.loads((self.folder / "results.json").read_text()), self.results)
         self.assertEqual((self.folder / "report.html").read_text(), "mine")
 
     def test_without_the_packages_one_line_says_what_to_install(self):
