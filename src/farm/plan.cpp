@@ -24,6 +24,9 @@ constexpr double kReserveOfMemory = 1.25;  // over what is predicted
 constexpr std::uint64_t kProgramMib = 256;
 // What a run holds of a frame while it renders: sums, guides, the picture, its view and history, with copies of some.
 constexpr std::uint64_t kBytesOfAPixel = 600;
+// By the filter oidn: 1050 bytes, and 2520 where halves go through the network, too (1280x720 with Open Image Denoise
+// 2.5.1).
+constexpr std::uint64_t kBytesOfADenoisedPixel = 2600;
 
 // Engines read the name within lines of their own.
 std::string plain_name(std::string name) {
@@ -42,7 +45,7 @@ std::uint64_t memory_mib(const JobSettings& job, const FramePlan& frames) {
     largest =
         std::max(largest, static_cast<std::uint64_t>(request.width_px) * static_cast<std::uint64_t>(request.height_px));
   }
-  bytes += largest * kBytesOfAPixel;
+  bytes += largest * (job.filter == "oidn" ? kBytesOfADenoisedPixel : kBytesOfAPixel);
   return static_cast<std::uint64_t>(kReserveOfMemory * static_cast<double>(bytes) / 1048576.0) + kProgramMib;
 }
 
