@@ -66,8 +66,8 @@ class Judge {
         }
       }
       if (doubts_.empty()) {
-        origin();
-        degrees();
+        places();
+        scale();
       }
     } else if (c_.form == PlaceForm::vector) {
       directions();
@@ -83,63 +83,107 @@ class Judge {
     doubts_.push_back(std::move(doubt));
   }
 
-  void origin() {
-    const bool is_px = c_.unit.value == PositionUnit::px;
-    const Vec2d size =
-        is_px ? Vec2d{static_cast<double>(display_.width_px), static_cast<double>(display_.height_px)} : Vec2d{1, 1};
-    if (!(is_px || c_.unit.value == PositionUnit::fraction) || c_.origin.evidence != Evidence::statistics ||
-        raw_.kind != GazeKind::screen) {
+  // Where the gaze would lie on the display.
+  void places() {
+    if (!are_positions(c_) || raw_.kind != GazeKind::screen || !raw_.is_own_table) {
       return;
+    }
+    Conventions c = c_;
+    const bool is_known = display_.width_px > 0 && !(c_.display && c_.display->evidence == Evidence::statistics);
+    c.display = c.display ? c.display : Concluded<DisplayGeometry>{display_, Evidence::header, {}};
+    std::optional<ToFractions> to_fractions;
+    try {
+      to_fractions.emplace(c, raw_.place);
+    } catch (const Error&) {
+      return;  // it needs a size that is not known, which will be said
     }
     std::size_t count = 0;
     std::size_t negative = 0;
+    std::size_t first_quarter = 0;  // to the right of and above 0
     std::size_t beside = 0;
     std::size_t beside_center = 0;
     const RawRows rows = measurable_rows(raw_, c_);
     for (const RawSample row : rows) {
-      if (!is_usable(row.validity) || !std::isfinite(row.at.x) || !std::isfinite(row.at.y)) {
+      const Vec2d at = (*to_fractions)({row.at.x, row.at.y});
+      if (!is_usable(row.validity) || !std::isfinite(at.x) || !std::isfinite(at.y)) {
         continue;
       }
+      const auto is_beside = [](double u, double v) { return u < 0 || v < 0 || u > 1 || v > 1; };
       ++count;
       negative += row.at.x < 0 || row.at.y < 0 ? 1 : 0;
-      beside += row.at.x < 0 || row.at.y < 0 || row.at.x > size.x || row.at.y > size.y ? 1 : 0;
-      beside_center += std::abs(row.at.x) > 0.5 * size.x || std::abs(row.at.y) > 0.5 * size.y ? 1 : 0;
+      first_quarter += row.at.x >= 0 && row.at.y >= 0 ? 1 : 0;
+      beside += is_beside(at.x, at.y) ? 1 : 0;
+      beside_center += is_beside(at.x + 0.5, at.y + 0.5) ? 1 : 0;
     }
-    const auto percent = [&](std::size_t n) { return 100 * static_cast<double>(n) / static_cast<double>(count); };
     constexpr std::size_t kFewest = 3;
+    constexpr std::size_t kEnough = 50;
     if (count < kFewest) {
       return;
     }
-    const bool is_known = size.x > 0 && !(c_.display && c_.display->evidence == Evidence::statistics);
-    if (percent(negative) > 25) {
-      add({"origin", "the positions count from the center of the display rather than from its top left",
-           fmt::format("{:.0f} % of them are negative{}", percent(negative),
-                       is_known
-                           ? fmt::format(", and {:.0f} % lie beside the display; counted from its center, {:.0f} %",
-                                         percent(beside), percent(beside_center))
-                           : ""),
+    const auto percent = [&](std::size_t n) { return 100 * static_cast<double>(n) / static_cast<double>(count); };
+    const bool is_fraction = c_.unit.value == PositionUnit::fraction;
+    const bool is_centered = c_.origin.value == PositionOrigin::center;
+    const std::string lie =
+        is_known || is_fraction
+            ? fmt::format("{:.0f} % of them lie beside the display; counted from its center, {:.0f} %", percent(beside),
+                          percent(beside_center))
+            : "";
+    if (!is_centered && percent(negative) > 25) {
+      add({"origin", "the positions count from the center of the display rather than from its corner",
+           fmt::format("{:.0f} % of them are negative{}{}", percent(negative), lie.empty() ? "" : ", and ", lie),
            "`gaze-origin` center"},
-          Evidence::statistics);
-    } else if (is_known && percent(beside) > 50 && raw_.is_own_table) {
+          c_.origin.evidence);
+    } else if (percent(beside) > 50 && !lie.empty()) {
       add({"beside-the-display", "most positions lie beside the display: its size, the unit or the origin is wrong",
-           fmt::format("{:.0f} % of them lie beside it{}", percent(beside),
-                       is_px ? fmt::format(", which has {:.0f}x{:.0f} px", size.x, size.y) : ""),
-           is_px ? "`screen-px` or `gaze-origin` top-left" : "`gaze-unit` or `gaze-origin` top-left"},
-          Evidence::header);
+           lie, "another `gaze-unit` or `screen-px`, or `gaze-origin` top-left"},
+          c_.unit.evidence == Evidence::option || c_.origin.evidence == Evidence::option ? Evidence::option
+                                                                                         : Evidence::header);
+    } else if (is_centered && percent(first_quarter) > 99 && count > kEnough) {
+      add({"origin", "gaze would lie in one quarter of the display alone, to the right of its center and above",
+           fmt::format("{:.0f} % of the numbers are not negative, though they count from the center",
+                       percent(first_quarter)),
+           "another `gaze-unit`, or `gaze-origin` top-left"},
+          c_.unit.evidence == Evidence::option ? Evidence::option : c_.origin.evidence);
     }
   }
 
-  // Numbers that are called degrees, and whose saccades last far too long for their size.
-  void degrees() {
-    if (c_.unit.value != PositionUnit::deg || c_.unit.evidence == Evidence::statistics) {
+  // How many degrees a unit is about, on a display that is 40 degrees wide where its distance is not known.
+  [[nodiscard]] double degrees_of_unit() const {
+    const DisplayGeometry& d = display_;
+    const bool knows_angle = d.width_cm > 0 && d.distance_cm > 0;
+    const double width = knows_angle ? 2 * std::atan2(0.5 * d.width_cm, d.distance_cm) * kDegPerRad : 40;
+    switch (c_.unit.value) {
+      case PositionUnit::fraction:
+        return c_.origin.value == PositionOrigin::center ? 0.5 * width : width;
+      case PositionUnit::norm:
+        return 0.5 * width;
+      case PositionUnit::height:
+        return d.width_px > 0 && d.height_px > 0 ? width * d.height_px / d.width_px : 0.6 * width;
+      case PositionUnit::px:
+        return d.width_px > 0 ? width / d.width_px : 0;
+      case PositionUnit::cm:
+        return d.width_cm > 0 ? width / d.width_cm : 1;
+      case PositionUnit::mm:
+        return d.width_cm > 0 ? 0.1 * width / d.width_cm : 0.1;
+      default:
+        return 1;
+    }
+  }
+
+  // Numbers whose saccades last far too long for the size that they would have.
+  void scale() {
+    if (c_.unit.evidence == Evidence::statistics || raw_.kind != GazeKind::screen) {
       return;
     }
     const auto motion = measure_motion(measurable_rows(raw_, c_), raw_);
+    const double degrees = degrees_of_unit() * c_.unit_scale;  // of a number as the file has it
     const auto factor = motion ? motion->degrees_per_unit() : std::nullopt;
-    constexpr double kFarTooSmall = 6;
-    if (factor && *factor > kFarTooSmall * c_.unit_scale && motion->most() < 5) {
-      add({"position-unit", "the positions can hardly be degrees",
-           fmt::format("{}; {}", motion->in_words(), motion->if_degrees(1)), "`gaze-unit` norm, height or rad"},
+    constexpr double kFarTooSmall = 5;
+    constexpr double kSmallDeg = 4;
+    if (factor && *factor > kFarTooSmall * degrees &&
+        degrees_of_unit() * std::max(motion->x.spread(), motion->y.spread()) < kSmallDeg) {
+      add({"position-unit", fmt::format("the positions can hardly be in {}", to_string(c_.unit.value)),
+           fmt::format("{}; so {}", motion->in_words(), motion->if_degrees(degrees)), "another `gaze-unit`"},
           c_.unit.evidence);
     }
   }

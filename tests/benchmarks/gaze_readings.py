@@ -17,7 +17,7 @@ SCREENS = ["arff/gaze.arff", "eyelink-asc/mono500.asc", "eyelink-asc/bino1000_bl
            "smi-iview-txt/recording1_Samples.txt", "bids/derived-tx300/sub-01_task-view_recording-eye1_physio.tsv.gz"]
 HEADS = ["pico-neo3-pro/boxing_VR.csv", "vive-pro-eye/TESTNA01_2D_Fist3.csv", "vive-pro-eye/TESTNA01_360VR_Fist3.csv"]
 WIDTH, HEIGHT = 1920, 1080
-ROWS = 6000
+ROWS = 3000
 # What a place in fractions is in each unit and origin, and the options that state it.
 PLACES = {
     "fraction": (lambda u, v: (u, v), ["--gaze-unit", "fraction"]),
@@ -35,7 +35,7 @@ AXES = {"gl": lambda x, y, z: (x, y, z), "unity": lambda x, y, z: (x, y, -z), "s
         "cv": lambda x, y, z: (x, -y, -z)}
 SCREEN = ["--screen-px", f"{WIDTH},{HEIGHT}", "--screen-cm", "51,29", "--screen-distance-cm", "60"]
 # Pairs of a truth and a statement that no data tell apart: mirrored pictures, and scales near each other.
-ALIKE = [{"fraction", "fraction from the bottom left"}, {"px", "px from the bottom left"}, {"norm", "height"},
+ALIKE = [{"fraction", "fraction from the bottom left"}, {"px", "px from the bottom left"}, {"norm", "height", "rad"},
          {"cm from the center", "deg"}, {"unity", "sranipal", "cv"}]
 
 
