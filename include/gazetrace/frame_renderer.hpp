@@ -47,8 +47,8 @@ struct FrameSettings {
   int threads = 0;  // 0: all
 };
 
-// A frame depends on what became of those before it. That it reads the samples of other frames (two_sided) is no
-// history: it has the same bits whichever frames are rendered beside it.
+// A frame depends on what became of those before it. That it reads the samples of other frames (AccumulateMode::window)
+// is no history: it has the same bits whichever frames are rendered beside it.
 bool uses_history(const FrameSettings& settings);
 
 // Wall time of the stages, ms.
@@ -59,7 +59,7 @@ struct StageTimes {
   double trace_ms = 0;        // samples, and putting the scene into its pose
   double guides_ms = 0;       // first hits for the filter
   double reconstruct_ms = 0;  // the filter
-  double temporal_ms = 0;     // accumulation, and where surfaces were before
+  double temporal_ms = 0;     // joining frames of a window, and where surfaces are in them
   double exposure_ms = 0;
   double layers_ms = 0;  // FrameLayers
 };
@@ -82,27 +82,14 @@ struct TracedFrame {
 };
 
 struct RenderedFrame {
-  Frame frame;             // linear, after accumulation
+  Frame frame;             // linear
   double exposure_ev = 0;  // stops; the radiance is not multiplied by it
   FrameLayers layers;      // those of FrameSettings::layers
   SamplingMap map;
   TraceStats samples, pilot;  // as SparseFrame::stats and TracedFrame::pilot
-  // Of frames that were traced only because this one reads them (AccumulateMode::two_sided), their pilots among them.
+  // Of frames that were traced only because this one reads them (AccumulateMode::window), their pilots among them.
   // Their time is part of `times`. Empty from FrameRenderer.
   TraceStats others;
-  Prediction prediction;
-  StageTimes times;
-};
-
-// A frame as it was reconstructed from its own samples, which other frames may read.
-struct ReconstructedFrame {
-  FrameRequest request;
-  Frame frame;
-  SamplingMap map;
-  std::vector<ImageRgb> light;  // FrameLayers::light before it is brought to the light of the finished picture
-  // What the frame would leave as history if it were the first one; only where other frames read it.
-  TemporalHistory alone;
-  TraceStats samples, pilot;
   Prediction prediction;
   StageTimes times;
 };
@@ -114,6 +101,13 @@ struct KnownLight {
   std::shared_ptr<const LearnedLight> light;
 };
 
+// A frame of a window: its samples, and what its pixels see.
+struct WindowFrame {
+  FrameRequest request;
+  TracedFrame traced;
+  PixelHits hits;
+};
+
 class FrameRenderer {
  public:
   // Error(usage) for a filter that is not there. Keeps a reference to `tracer`, which must outlive it; several
@@ -122,34 +116,16 @@ class FrameRenderer {
 
   [[nodiscard]] const FrameSettings& settings() const { return settings_; }
 
-  // map -> trace -> guides, where the filter needs them -> reconstruct -> accumulate -> exposure.
+  // map -> trace -> guides, where the filter needs them -> reconstruct -> exposure.
   // A function of its arguments: without history (uses_history) a frame has the same bits alone and in a sequence.
-  // `history` is that of the frames before, and then that of this frame as well; it begins empty. Error(usage) with
-  // AccumulateMode::two_sided, which takes reconstruct() and join().
+  // `history` is that of the frames before, and then that of this frame as well; it begins empty. No
+  // other frame is read, whatever AccumulateSettings say.
   [[nodiscard]] RenderedFrame render(const FrameRequest& request, TemporalHistory& history) const;
   // With `known`, which saves time and changes no picture. It begins empty, and is then that of this frame.
   [[nodiscard]] RenderedFrame render(const FrameRequest& request, TemporalHistory& history, KnownLight& known) const;
 
-  // AccumulateMode::two_sided in two steps: the stages up to reconstruction, and, once the frames around it are there,
-  // accumulation and all that follows. `window` holds frames in order, at most AccumulateSettings::window on each side
-  // of `own`; where there are fewer, fewer are read. `own` may hold the samples of several frames at rest
-  // (FrameWindow): these are not in the window then.
-  [[nodiscard]] ReconstructedFrame reconstruct(const FrameRequest& request) const;
-  // The same from samples that are there. `guides`: those of the request; nullptr where the filter needs none.
-  [[nodiscard]] ReconstructedFrame reconstruct(const FrameRequest& request, const TracedFrame& traced,
-                                               const Guides* guides) const;
-  // What the filter must know of first hits; empty where it needs nothing. Frames at rest have the same.
-  [[nodiscard]] std::optional<Guides> guides(const FrameRequest& request) const;
   // Whether nothing moves between two frames: they see the same, and differ by their samples alone.
   [[nodiscard]] bool at_rest(const FrameRequest& a, const FrameRequest& b) const;
-  // Whether frames around a frame are read before its filter, surface by surface (src/temporal/moving_views.hpp): all
-  // that can move in the scene is the camera, the filter takes light surface by surface, and AccumulateSettings::blend
-  // is not set.
-  [[nodiscard]] bool only_views_move() const;
-  // Lets other frames read this one: fills in ReconstructedFrame::alone.
-  void keep_history(ReconstructedFrame& frame) const;
-  [[nodiscard]] RenderedFrame join(const std::vector<const ReconstructedFrame*>& window, std::size_t own,
-                                   TemporalHistory& history) const;
 
   // The first two stages alone. With TraceSettings::samples their sums are what can be joined with other parts'.
   [[nodiscard]] TracedFrame trace(const FrameRequest& request) const;
@@ -157,14 +133,25 @@ class FrameRenderer {
   // All stages after them: render() is finish(request, trace(request), history), in one process or in two.
   [[nodiscard]] RenderedFrame finish(const FrameRequest& request, TracedFrame traced, TemporalHistory& history) const;
 
+  // The first stages of a frame that others read (AccumulateMode::window), and all stages after them for one of a
+  // window's frames, which are in order: only its own samples and times are counted. Whether this frame has neighbours
+  // on both sides is the caller's choice; JoinedFrames chooses them by AccumulateSettings.
+  [[nodiscard]] WindowFrame window_frame(const FrameRequest& request, KnownLight& known) const;
+  [[nodiscard]] RenderedFrame finish(const std::vector<const WindowFrame*>& window, std::size_t own,
+                                     TemporalHistory& history) const;
+
  private:
+  // All stages after the samples. What the picture shows is in `shown`; counts and times are those of `own`.
+  [[nodiscard]] RenderedFrame finish_with(const FrameRequest& request, const SamplingMap& map, const SparseFrame& shown,
+                                          TracedFrame own, TemporalHistory& history) const;
   // Whether `known` is what the frame would learn of its light: its own, or that of a frame at rest with it.
   [[nodiscard]] bool knows_light(const KnownLight& known, const FrameRequest& request) const;
   // Adds the paths that it takes to `stats`.
   [[nodiscard]] std::shared_ptr<const LearnedLight> learned_light(const PosedScene& scene, const FrameRequest& request,
                                                                   KnownLight& known, TraceStats& stats) const;
   // Each group of light by a filter that is linear; none unless they are asked for.
-  [[nodiscard]] std::vector<ImageRgb> filtered_light(const TracedFrame& traced, StageTimes& times) const;
+  [[nodiscard]] std::vector<ImageRgb> filtered_light(const SparseFrame& sparse, const SamplingMap& map,
+                                                     StageTimes& times) const;
   void add_layers(const FrameRequest& request, std::vector<ImageRgb> light, RenderedFrame& rendered) const;
 
   PathTracer* tracer_;

@@ -102,8 +102,9 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   // How it is rendered
   SamplingSettings foveation;
   TraceSettings trace;
-  std::string filter = "auto";  // filter_of() says which filter that is
-  AccumulateSettings accumulate;
+  std::string filter = "auto";    // filter_of() says which filter that is
+  AccumulateSettings accumulate;  // how many frames are read follows from the times below
+  DurationNs accumulate_past{250'000'000}, accumulate_future{250'000'000};
   std::string checkpoint, resume_from;
   std::int32_t checkpoint_every = 0, preroll = 0;
   std::optional<PixelIndex> only_pixel;

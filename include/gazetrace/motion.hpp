@@ -16,6 +16,29 @@ struct OtherView {
   std::int64_t t_video_ns = 0;  // the time whose positions and shapes count
 };
 
+// What the ray through a pixel's centre hits, by the tracer's own numbers: a point that can be followed to any time and
+// into any view without another ray.
+struct PixelHit {
+  std::uint32_t instance, geometry, primitive;
+  float u, v;
+};
+
+// What the pixels of a frame see, one entry each, as SurfaceMotion finds it. They belong to the tracer that found them.
+struct PixelHits {
+  OtherView view;  // from where, and when
+  Image<PixelHit> hits;
+  ImageRgb position_m;  // from the view's camera, in world axes; zero for a miss
+};
+
+// Where the points that pixels see are at another time, in another view. One entry per pixel that sees them.
+struct HitPlaces {
+  Image<std::uint32_t> object;  // 1 + index into Scene::instances; 0: a miss
+  Image<Vec2d> px;              // in continuous coordinates of the other view, whether or not something hides them
+                                // there; the pixel's own centre where nothing has moved; NaN where it is not in front
+  ImageRgb position_m;          // from the other view's camera, in world axes; zero for a miss
+  ImageRgb moved_m;             // from the one time to the other, in the world
+};
+
 // One entry per pixel, found by the ray through its centre. Lens and shutter are left out: both cameras are pinholes in
 // the middle of their frames' times. Where the ray misses everything, other_px is where its direction is.
 struct SurfaceMotion {

@@ -118,7 +118,7 @@ struct JudgedFrames {
 struct FramePlan {
   std::vector<FrameRequest> frames;
   // Further frames in ascending order, none of them among `frames`, that are traced only because those read them
-  // (AccumulateMode::two_sided).
+  // (AccumulateMode::window).
   std::vector<FrameRequest> around;
   JudgedFrames judged;                       // for QualityTarget::jod
   std::optional<GazeAges> ages;              // empty: no frame has gaze from a log

@@ -17,7 +17,8 @@ namespace gazetrace {
 // Every pixel has a finite value. The AOV images (albedo, normal, depth) are empty unless the SparseFrame holds guides.
 struct Frame {
   ImageRgb radiance;       // linear Rec.709
-  ImageGray sample_count;  // effective samples behind a pixel: site samples / site pixels, plus what accumulation adds
+  ImageGray sample_count;  // effective samples behind a pixel: site samples / site pixels, those of other frames that
+                           // join it included
   ImageGray variance;      // of the pixel's mean luminance, from the spread of its samples, or of those around one
   // Estimate of the squared error of the pixel's luminance: its variance, and the square of what the filter changed
   // beside noise. Empty for filters that make no estimate of it (all but those that need halves). Accumulation leaves
@@ -94,19 +95,16 @@ std::string denoiser_description();
 
 // What decides which filter suits a job. The defaults are those of a foveated job that asks for nothing else.
 struct FilterFacts {
-  bool foveated = true;            // a gaze steers where the samples go, by another sampling than a uniform one
-  bool accumulates_sites = false;  // AccumulateMode::reproject under AccumulateOrder::before
-  bool means_frames = false;       // AccumulateMode::running
-  bool single_pixel = false;       // TraceSettings::only_pixel
-  bool accumulates = false;        // any AccumulateMode but off
-  bool has_denoiser = false;       // denoiser_library() has found one
+  bool foveated = true;       // a gaze steers where the samples go, by another sampling than a uniform one
+  bool single_pixel = false;  // TraceSettings::only_pixel
+  bool has_denoiser = false;  // denoiser_library() has found one
 };
 struct FilterChoice {
   std::string name;
   std::string reason;  // the end of a sentence that begins "... because"
 };
-// "oidn" where its library is there. "guided" where it is not, and for frames that are accumulated, since it takes the
-// light of other frames surface by surface. "linear" wherever "guided" would not work (it needs all samples).
+// "oidn" where its library is there, "guided" where it is not. "linear" wherever "guided" would not work (it needs all
+// samples).
 FilterChoice choose_filter(const FilterFacts& facts);
 
 }  // namespace gazetrace

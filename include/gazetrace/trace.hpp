@@ -172,10 +172,6 @@ struct SparseFrame {
   // that miss, or hit an unlit surface, belong to none. Both are empty unless TraceSettings::surfaces.
   std::vector<SurfaceSums> surfaces;
   std::vector<std::uint32_t> first_surface;
-  // Of each surface, how many samples of other frames are in SurfaceSums::reflected, ::square and ::half_difference,
-  // which are brought to the surface's own count and albedo (src/temporal/moving_views.hpp). A site without samples
-  // then may have a surface whose count of 1 stands for one of theirs. Empty: none.
-  std::vector<std::uint32_t> samples_of_others;
   // Of each site that filters change, beside its surfaces; empty unless TraceSettings::surfaces.
   std::vector<FirstHitSums> first_hits;
   TraceStats stats;
@@ -276,6 +272,11 @@ class PosedScene {
   // What the pixels' centres see in this pose, and where that is in another view, earlier or later.
   [[nodiscard]] SurfaceMotion surface_motion(const Camera& camera, int width_px, int height_px,
                                              const OtherView& other) const;
+
+  // What the pixels' centres see in this pose, which is that of `view`'s time.
+  [[nodiscard]] PixelHits pixel_hits(const OtherView& view, int width_px, int height_px) const;
+  // Where that is in another view. It costs least in a pose of either view's time.
+  [[nodiscard]] HitPlaces places_of(const PixelHits& seen, const OtherView& other) const;
 
  private:
   friend class PathTracer;

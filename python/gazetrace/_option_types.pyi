@@ -124,14 +124,8 @@ class JobOptions(TypedDict, total=False):
     target_jod: Value | None
     filter: Value | None
     accumulate: Value | None
-    accumulate_window: Value | None
-    accumulate_hold: Value | None
-    accumulate_order: Value | None
-    accumulate_frames: Value | None
-    accumulate_blend: Value | None
-    accumulate_clip: Value | None
-    accumulate_reset_saccades: bool | None
-    accumulate_reset_blinks: bool | None
+    accumulate_past: Value | None
+    accumulate_future: Value | None
     checkpoint: Value | None
     checkpoint_every: Value | None
     resume_from: Value | None

@@ -31,7 +31,7 @@ class PlanTest(TestCase):
         self.assertEqual(int(sampling.sites["samples"].sum()), sampling.samples)
 
     def test_preroll_is_no_row(self):
-        plan = small_job(frames="5-6", preroll=3, accumulate="running").plan()
+        plan = small_job(frames="5-6", preroll=3, exposure="auto", exposure_smoothing="0.5s").plan()
         np.testing.assert_array_equal(plan.frame, [5, 6])
 
     def test_a_wrong_file_is_refused(self):

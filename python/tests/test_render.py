@@ -158,7 +158,7 @@ class RenderTest(TestCase):
     @needs_program
     def test_equals_the_program_to_the_bit(self):
         options = {"camera": "walk", "gaze": GAZE_LOG, "size": "96x54", "frames": "1-3", "fps": "10", "seed": "5",
-                   "aov": "albedo,normal,depth,variance,samples,eccentricity", "accumulate": "reproject",
+                   "aov": "albedo,normal,depth,variance,samples,eccentricity", "accumulate": "window",
                    "exr_pixels": "float"}
         flags = [text for name, value in options.items() for text in (f"--{name.replace('_', '-')}", value)]
         run_program("render", COURTYARD, *flags, "-o", self.folder / "frame.####.exr", "-o",

@@ -43,14 +43,7 @@ void check_ranges(const JobSettings& job, const JobSchema& schema) {
 }
 
 void check_history_options(const JobSettings& job) {
-  const AccumulateSettings& accumulate = job.accumulate;
-  if (accumulate.blend > 0 && accumulate.blend < kLeastBlend) {
-    throw Error(ErrorKind::usage, "`accumulate-blend`",
-                fmt::format("a share of {} leaves nothing of the current frame", accumulate.blend),
-                fmt::format("give {} or more, or 0 for weights by samples", kLeastBlend));
-  }
   PipelineSettings history;
-  history.accumulate = accumulate;
   history.exposure = job.exposure;
   history.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
   for (const auto& [option, given] :
@@ -58,14 +51,8 @@ void check_history_options(const JobSettings& job) {
         std::pair("`preroll`", job.preroll > 0)}) {
     if (given && !uses_history(history)) {
       throw Error(ErrorKind::usage, option, "frames do not depend on those before them",
-                  "leave it out, or give `accumulate` or `exposure-smoothing`");
+                  "leave it out, or give `exposure-smoothing`");
     }
-  }
-  if (accumulate.mode == AccumulateMode::reproject && accumulate.order == AccumulateOrder::before &&
-      Reconstruction({filter_of(job).name}).needs().surfaces) {
-    throw Error(ErrorKind::usage, "`accumulate-order`",
-                fmt::format("before the filter there are sites to accumulate, and '{}' works on surfaces", job.filter),
-                "give after, or another `filter`");
   }
   if (job.preroll > 0 && !job.resume_from.empty()) {
     throw Error(ErrorKind::usage, "`preroll`", "the history comes from `resume-from`", "give one of them");
@@ -100,15 +87,6 @@ void check_target(const JobSettings& job) {
     throw Error(ErrorKind::usage, option, "with `only-pixel` a single pixel is traced, and no quality is chosen",
                 "give `spp`, as the run's record says of its rate");
   }
-  const AccumulateSettings& accumulate = job.accumulate;
-  const bool adds_up = accumulate.mode == AccumulateMode::two_sided && !(accumulate.blend > 0) &&
-                       !accumulate.reset_at_saccades && !accumulate.reset_at_blinks;
-  if (accumulate.mode != AccumulateMode::off && !adds_up) {
-    throw Error(
-        ErrorKind::usage, option,
-        "only what `accumulate` two-sided adds up at rest is known beforehand, without `accumulate-blend` and resets",
-        "give `accumulate` two-sided, leave it out, or give `spp`");
-  }
 }
 
 void check_stage(const JobSettings& job) {
@@ -118,7 +96,7 @@ void check_stage(const JobSettings& job) {
   const auto refuse = [](const char* reason) {
     throw Error(ErrorKind::usage, "`stage`", reason, "leave it out, or change that");
   };
-  if (job.accumulate.mode == AccumulateMode::two_sided) {
+  if (job.accumulate.mode == AccumulateMode::window) {
     refuse("frames read the samples of those around them, and each part traces those by itself");
   }
   if (job.foveation.target.jod) {
@@ -191,11 +169,7 @@ FilterChoice filter_of(const JobSettings& job) {
   const Sampling& sampling = job.foveation.sampling;
   const bool foveated = has_gaze ? !is_uniform(sampling) : follows_picture(sampling);
   return choose_filter({.foveated = foveated,
-                        .accumulates_sites = job.accumulate.mode == AccumulateMode::reproject &&
-                                             job.accumulate.order == AccumulateOrder::before,
-                        .means_frames = job.accumulate.mode == AccumulateMode::running,
                         .single_pixel = job.only_pixel.has_value(),
-                        .accumulates = job.accumulate.mode != AccumulateMode::off,
                         .has_denoiser = !denoiser_library().path.empty()});
 }
 

@@ -51,6 +51,21 @@ void check_frame_memory(const JobSettings& job) {
                             job.size.width, job.size.height, bytes / 1073741824.0, most / 1073741824.0),
                 "give a smaller one");
   }
+  const AccumulateSettings window = accumulate_of(job);
+  if (window.mode == AccumulateMode::off) {
+    return;
+  }
+  // With the surfaces that filters work on, mostly one a pixel.
+  constexpr double kBytesOfAPixelInAWindow = 200;
+  const int frames = 1 + window.past_frames + window.future_frames;
+  const double all = kBytesOfAPixelInAWindow * frames * job.size.width * job.size.height;
+  const auto most = static_cast<double>(job.max_memory.bytes > 0 ? job.max_memory.bytes : most_memory_bytes());
+  if (all > most) {
+    throw Error(ErrorKind::usage, "`accumulate-past`",
+                fmt::format("a window of {} frames takes about {:.2f} GiB of memory, and {:.2f} GiB is the most",
+                            frames, all / 1073741824.0, most / 1073741824.0),
+                "shorten it and `accumulate-future`, give a smaller `size`, or raise `max-memory`");
+  }
 }
 
 }  // namespace gazetrace

@@ -11,6 +11,7 @@
 #include "job/choose_frames.hpp"
 #include "job/chunks.hpp"
 #include "job/gaze_inputs.hpp"
+#include "job/outputs.hpp"
 #include "job/plan_settings.hpp"
 
 namespace gazetrace {
@@ -22,15 +23,16 @@ bool has_density_picture(const FoveationSettings& foveation, std::int64_t frame)
   return !has_frame_number(files) || std::filesystem::exists(frame_file_name(files, static_cast<std::int32_t>(frame)));
 }
 
-// For accumulation from both sides: the frames that those of the plan read beside each other. They exist from frame 1
+// The frames that those of the plan read beside each other. They exist from frame 1
 // on and as far as the camera's path goes, whether or not they are rendered, so that a frame is the same in every run.
 void add_frames_around(const JobSettings& job, const CameraPath& camera, ResolvedJob& resolved) {
   const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
   PlanSettings settings = resolved.plan_settings;
   const std::set<std::int32_t> asked(settings.frames.begin(), settings.frames.end());
   std::set<std::int32_t> all = asked;
+  const AccumulateSettings reach = accumulate_of(job);
   for (const std::int32_t frame : asked) {
-    for (std::int32_t apart = -job.accumulate.window; apart <= job.accumulate.window; ++apart) {
+    for (std::int32_t apart = -reach.past_frames; apart <= reach.future_frames; ++apart) {
       const std::int64_t near = std::int64_t{frame} + apart;
       if (has_frame(camera, settings, near) && has_density_picture(job.foveation, near)) {
         all.insert(frame + apart);
@@ -43,6 +45,13 @@ void add_frames_around(const JobSettings& job, const CameraPath& camera, Resolve
   resolved.plan.frames.clear();
   for (FrameRequest& request : whole.frames) {
     (asked.contains(request.frame) ? resolved.plan.frames : resolved.plan.around).push_back(std::move(request));
+  }
+  if (const std::size_t more = resolved.plan.around.size(); more > 0) {
+    resolved.decisions.emplace_back(
+        "accumulate", fmt::format("{} more frame{} traced for the windows of these {}; parts of a sequence trace those "
+                                  "around their own, up to {} a part",
+                                  more, more == 1 ? " is" : "s are", resolved.plan.frames.size(),
+                                  reach.past_frames + reach.future_frames));
   }
 }
 
@@ -70,7 +79,7 @@ void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t ta
   }
   resolved.plan = plan_frames(camera, log, settings, resolved.steering ? &*resolved.steering : nullptr);
   resolved.plan_settings = std::move(settings);
-  if (job.accumulate.mode == AccumulateMode::two_sided && job.accumulate.window > 0) {
+  if (job.accumulate.mode == AccumulateMode::window) {
     add_frames_around(job, camera, resolved);
   }
   if (resolved.plan.ages && !job.gaze_at) {

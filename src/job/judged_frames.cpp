@@ -21,7 +21,7 @@ bool sees_changes(const FrameRate& fps) {
   return static_cast<double>(fps.numerator) > 4 * static_cast<double>(fps.denominator);
 }
 
-JudgedNumbers judged_numbers(std::int32_t frames, LaterFrames later, const FrameRate& fps, std::int32_t group) {
+JudgedNumbers judged_numbers(std::int32_t frames, LaterFrames later, const FrameRate& fps) {
   JudgedNumbers judged;
   judged.sequence_frames = frames;
   if (frames == 1) {
@@ -32,9 +32,8 @@ JudgedNumbers judged_numbers(std::int32_t frames, LaterFrames later, const Frame
   const auto taps = static_cast<std::int32_t>(temporal_filters(rate).sustained.size());
   const std::int32_t first = std::min(frames, taps + 2);
   judged.runs.push_back(run_of(1, first));
-  // A run tells of its last frames, two or a group: those before them are what the metric has in view.
-  const std::int32_t least = taps + 1;
-  const std::int32_t length = std::min(frames, std::max(least, taps + group - 1));
+  // A run tells of its last two frames: those before them are what the metric has in view.
+  const std::int32_t length = std::min(frames, taps + 1);
   const std::int32_t last = frames - length + 1;
   std::vector<std::int32_t> begins;
   if (later != LaterFrames::as_early_ones) {
@@ -49,7 +48,7 @@ JudgedNumbers judged_numbers(std::int32_t frames, LaterFrames later, const Frame
       begin = std::max(begin, after);
     }
     const std::int32_t count = std::min(length, frames - begin + 1);
-    if (begin >= after && count >= std::min(least, length)) {
+    if (begin >= after && count >= length) {
       judged.runs.push_back(run_of(begin, count));
     }
   }

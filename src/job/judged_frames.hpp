@@ -25,8 +25,7 @@ bool sees_changes(const FrameRate& fps);
 // begins the sequence, and is two frames longer than that time: its last frames show what later ones look like, unless
 // these differ. Then a further run looks at the middle, or two look at the middle and at the end. `frames` is the
 // length of the whole sequence, whose frames follow each other fast enough (sees_changes()). A single frame is judged
-// as a still, by four of its kind. Where groups of frames show one sum (AccumulateSettings::hold), later runs tell of
-// as many as a group has, so that each place in it counts.
-JudgedNumbers judged_numbers(std::int32_t frames, LaterFrames later, const FrameRate& fps, std::int32_t group = 1);
+// as a still, by four of its kind.
+JudgedNumbers judged_numbers(std::int32_t frames, LaterFrames later, const FrameRate& fps);
 
 }  // namespace gazetrace

@@ -13,8 +13,8 @@
 #include "gazetrace/error.hpp"
 #include "job/choose_frames.hpp"
 #include "job/judged_frames.hpp"
+#include "job/outputs.hpp"
 #include "job/scene.hpp"
-#include "temporal/frames_at_rest.hpp"
 
 namespace gazetrace {
 namespace {
@@ -45,12 +45,12 @@ SequenceLength sequence_length(const JobSettings& job, const ViewInputs& inputs)
 
 // All that are traced for the judged ones. A still is judged by several examples of its one frame, of which only that
 // frame need exist: a camera's path may end there.
-std::vector<std::int32_t> frames_to_plan(const JudgedNumbers& judged, std::int32_t reach, const CameraPath& camera,
-                                         const PlanSettings& plan) {
+std::vector<std::int32_t> frames_to_plan(const JudgedNumbers& judged, const AccumulateSettings& reach,
+                                         const CameraPath& camera, const PlanSettings& plan) {
   std::set<std::int32_t> all{1};
   for (const std::vector<std::int32_t>& run : judged.runs) {
     for (const std::int32_t frame : run) {
-      for (std::int32_t apart = -reach; apart <= reach; ++apart) {
+      for (std::int32_t apart = -reach.past_frames; apart <= reach.future_frames; ++apart) {
         const bool is_of_sequence = apart == 0 && judged.sequence_frames > 1;
         if (is_of_sequence || has_frame(camera, plan, std::int64_t{frame} + apart)) {
           all.insert(frame + apart);
@@ -74,19 +74,17 @@ JudgedFrames plan_judged_frames(const JobSettings& job, const ViewInputs& inputs
                             frames_per_second(job.fps)),
                 "give a higher `fps`, or a budget");
   }
-  // What is added up from both sides grows until a window is full.
-  const LaterFrames later = length.differs                                     ? LaterFrames::all_differ
-                            : job.accumulate.mode == AccumulateMode::two_sided ? LaterFrames::as_the_middle
-                                                                               : LaterFrames::as_early_ones;
+  // What joins a frame grows until its window is full.
+  const LaterFrames later = length.differs                                  ? LaterFrames::all_differ
+                            : job.accumulate.mode == AccumulateMode::window ? LaterFrames::as_the_middle
+                                                                            : LaterFrames::as_early_ones;
   if (length.frames > 1 && !view_moves && job.accumulate.mode == AccumulateMode::off) {
     decisions.emplace_back("accumulate",
-                           "off; the view is at rest, and with `accumulate` two-sided frames share their samples and "
+                           "off; the view is at rest, and with `accumulate` window frames share their samples and "
                            "take many times fewer for this quality");
   }
-  const std::int32_t reach = job.accumulate.mode == AccumulateMode::two_sided ? job.accumulate.window : 0;
-  const std::int32_t group = reach > 0 && !view_moves ? frames_in_group(job.accumulate) : 1;
-  const JudgedNumbers numbers = judged_numbers(length.frames, later, job.fps, group);
-  plan.frames = frames_to_plan(numbers, reach, inputs.camera, plan);
+  const JudgedNumbers numbers = judged_numbers(length.frames, later, job.fps);
+  plan.frames = frames_to_plan(numbers, accumulate_of(job), inputs.camera, plan);
   plan.most_frames_without_gaze = 0;  // they are chosen by their number, and may lie behind the log's end
   FramePlan planned = plan_frames(inputs.camera, inputs.log, plan, inputs.steering);
 

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -203,20 +205,32 @@ void check_output_folders(const OutputSettings& output, const std::string& check
   }
 }
 
+AccumulateSettings accumulate_of(const JobSettings& job) {
+  AccumulateSettings settings = job.accumulate;
+  const auto frames_in = [&](const DurationNs& time) {  // times that are meant to be of whole frames may be rounded
+    const double a_second = static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator);
+    return static_cast<std::int32_t>(std::floor(static_cast<double>(time.ns) * 1e-9 * a_second + 1e-3));
+  };
+  const bool joins = settings.mode == AccumulateMode::window;
+  settings.past_frames = joins ? frames_in(job.accumulate_past) : 0;
+  settings.future_frames = joins ? frames_in(job.accumulate_future) : 0;
+  return settings;
+}
+
 PipelineSettings pipeline_settings(const JobSettings& job) {
   PipelineSettings settings;
   settings.foveation = job.foveation;
-  if (looks_first(job.foveation.sampling) && job.accumulate.mode == AccumulateMode::two_sided &&
+  if (looks_first(job.foveation.sampling) && job.accumulate.mode == AccumulateMode::window &&
       job.foveation.max_block_px == kDefaultMaxBlockPx) {
-    // Frames at rest are added up only where their sites are the same, and larger blocks follow from each frame's own
-    // pilot.
+    // Frames at rest share all their samples only where their sites are the same, and larger blocks follow from each
+    // frame's own pilot.
     settings.foveation.max_block_px = 1;
   }
   settings.trace = job.trace;
   settings.trace.only_pixel = job.only_pixel;
   settings.trace.guides = show_first_hits(job.exr.aovs);
   settings.reconstruction = {filter_of(job).name};
-  settings.accumulate = job.accumulate;
+  settings.accumulate = accumulate_of(job);
   settings.checkpoint = job.checkpoint;
   settings.checkpoint_every = job.checkpoint_every;
   settings.resume_from = job.resume_from;

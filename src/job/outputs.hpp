@@ -7,6 +7,8 @@ namespace gazetrace {
 
 // Throws Error(usage) where two patterns are of the same kind.
 OutputSettings output_settings(const JobSettings& job);
+// With the frames that the job's times of a window hold.
+AccumulateSettings accumulate_of(const JobSettings& job);
 // Throws Error(input) where files cannot be created in the folders of the outputs or of the checkpoint, as far as that
 // can be told without creating any.
 void check_output_folders(const OutputSettings& output, const std::string& checkpoint);

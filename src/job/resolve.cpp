@@ -69,10 +69,6 @@ void load_scene_of(const JobSettings& job, const ResolveOptions& options, Resolv
   resolved.load_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   append(resolved.warnings, resolved.scene->warnings);
   append(resolved.warnings, resolved.scene->environment.warnings);
-  if (job.accumulate.mode == AccumulateMode::running && moves(*resolved.scene)) {
-    resolved.warnings.emplace_back(
-        "`accumulate` running looks at the camera alone: what moves in the scene is smeared");
-  }
 }
 
 // Whether the scene's animation may decide how many frames are wanted, or how many are judged.

@@ -70,7 +70,7 @@ RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer
   record.facts["load_s"] = fmt::format("{:.3f}", resolved.load_s);
   record.facts["bvh_build_s"] = fmt::format("{:.3f}", tracer.memory().build_s);
   record.facts["bvh_mib"] = fmt::format("{:.1f}", static_cast<double>(tracer.memory().bvh_bytes) / 1048576.0);
-  if (settings.accumulate.mode == AccumulateMode::two_sided) {
+  if (settings.accumulate.future_frames > 0) {
     record.facts["causal"] = "false";  // frames use others that come after them
   }
   record.facts["state"] = "running";

@@ -36,6 +36,7 @@ void for_each_column(Row& row, const Visit& visit) {
   visit("pixels", row.pixels);
   visit("samples", row.samples);
   visit("pilot_samples", row.pilot_samples);
+  visit("other_samples", row.other_samples);
   visit("learning_paths", row.learning_paths);
   visit("rays_primary", row.rays_primary);
   visit("rays_bounce", row.rays_bounce);

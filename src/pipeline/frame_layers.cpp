@@ -45,13 +45,14 @@ std::shared_ptr<const std::vector<MatteTable>> matte_tables(const Scene& scene,
   return tables;
 }
 
-std::vector<ImageRgb> FrameRenderer::filtered_light(const TracedFrame& traced, StageTimes& times) const {
+std::vector<ImageRgb> FrameRenderer::filtered_light(const SparseFrame& sparse, const SamplingMap& map,
+                                                    StageTimes& times) const {
   if (!settings_.layers.light) {
     return {};
   }
   return timed(times.layers_ms, [&] {
     const Reconstruction filter = is_linear(reconstruction_) ? reconstruction_ : Reconstruction({"linear"});
-    return filter_light_groups(traced.sparse, traced.map, filter, settings_.threads);
+    return filter_light_groups(sparse, map, filter, settings_.threads);
   });
 }
 
@@ -64,8 +65,7 @@ void FrameRenderer::add_layers(const FrameRequest& request, std::vector<ImageRgb
   rendered.layers = timed(rendered.times.layers_ms, [&] {
     FrameLayers layers;
     layers.light = std::move(light);
-    const bool is_own = is_linear(reconstruction_) && settings_.accumulate.mode == AccumulateMode::off;
-    if (!layers.light.empty() && !is_own) {
+    if (!layers.light.empty() && !is_linear(reconstruction_)) {
       scale_to_picture(rendered.frame.radiance, layers.light);
     }
     const PosedScene scene = tracer_->at({request.shutter_open_ns, request.shutter_close_ns});

@@ -8,6 +8,8 @@
 #include "pipeline/frame_stages.hpp"
 #include "pipeline/quality/adaptive_rates.hpp"
 #include "pipeline/trace_counts.hpp"
+#include "temporal/join_window.hpp"
+#include "temporal/same_camera.hpp"
 
 namespace gazetrace {
 namespace {
@@ -82,6 +84,7 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request, KnownLight& known)
   });
   TraceSettings settings = reconstruction_.trace_settings(frame_settings.trace);
   settings.light_groups = settings_.layers.light;
+  settings.surfaces = settings.surfaces || settings_.accumulate.mode == AccumulateMode::window;
   traced.sparse =
       timed(times.trace_ms, [&] { return scene.trace(request.camera, request.frame, traced.map, settings); });
   return traced;
@@ -93,61 +96,84 @@ RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory
 }
 
 RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory& history, KnownLight& known) const {
-  if (settings_.accumulate.mode == AccumulateMode::two_sided) {
-    throw Error(ErrorKind::usage, "`accumulate`", "two-sided reads the frames around a frame, and here is one alone",
-                "reconstruct them and join them, or call render_sequence()");
-  }
   return finish(request, trace(request, known), history);
 }
 
 RenderedFrame FrameRenderer::finish(const FrameRequest& request, TracedFrame traced, TemporalHistory& history) const {
-  const PosedScene scene = tracer_->at(shutter_of(request));
+  const SparseFrame sparse = std::move(traced.sparse);
+  traced.sparse.stats = sparse.stats;
+  const SamplingMap map = traced.map;
+  return finish_with(request, map, sparse, std::move(traced), history);
+}
+
+bool FrameRenderer::at_rest(const FrameRequest& a, const FrameRequest& b) const {
+  return !tracer_->moves() && a.width_px == b.width_px && a.height_px == b.height_px && same_camera(a.camera, b.camera);
+}
+
+WindowFrame FrameRenderer::window_frame(const FrameRequest& request, KnownLight& known) const {
+  WindowFrame frame{request, trace(request, known), {}};
+  frame.hits = timed(frame.traced.times.temporal_ms, [&] {
+    return tracer_->at(shutter_of(request))
+        .pixel_hits({request.camera, request.t_video_ns}, request.width_px, request.height_px);
+  });
+  return frame;
+}
+
+RenderedFrame FrameRenderer::finish(const std::vector<const WindowFrame*>& window, std::size_t own,
+                                    TemporalHistory& history) const {
+  const WindowFrame& frame = *window[own];
+  const FrameRequest& request = frame.request;
+  const auto samples_of = [](const WindowFrame& one) {
+    return WindowSamples{one.request.frame, &one.request.camera, &one.traced.map, &one.traced.sparse};
+  };
+  TracedFrame itself;
+  itself.map = frame.traced.map;
+  itself.sparse.stats = frame.traced.sparse.stats;
+  itself.pilot = frame.traced.pilot;
+  itself.prediction = frame.traced.prediction;
+  itself.times = frame.traced.times;
+  const JoinedSamples joined = timed(itself.times.temporal_ms, [&] {
+    const PosedScene scene = tracer_->at(shutter_of(request));
+    const OtherView view{request.camera, request.t_video_ns};
+    const HitPlaces places = scene.places_of(frame.hits, view);
+    WindowJoin join(samples_of(frame), places, tracer_->moves(), settings_.threads);
+    for (const WindowFrame* other : window) {
+      if (other != &frame) {
+        join.add(samples_of(*other), scene.places_of(other->hits, view));
+      }
+    }
+    return join.joined();
+  });
+  return finish_with(request, joined.map, joined.sparse, std::move(itself), history);
+}
+
+bool uses_history(const FrameSettings& settings) {
+  return settings.exposure.mode == ExposureMode::log_average && settings.exposure.smoothing_s > 0;
+}
+
+RenderedFrame FrameRenderer::finish_with(const FrameRequest& request, const SamplingMap& map, const SparseFrame& shown,
+                                         TracedFrame own, TemporalHistory& history) const {
   RenderedFrame rendered;
-  rendered.times = traced.times;
+  rendered.times = own.times;
   StageTimes& times = rendered.times;
-  std::optional<Guides> guides;
+  std::optional<Guides> first_hits;
   if (const auto wanted = reconstruction_.guide_settings(settings_.trace)) {
-    guides = timed(times.guides_ms,
-                   [&] { return scene.guides(request.camera, request.width_px, request.height_px, *wanted); });
-  }
-  const auto filtered = [&](const SparseFrame& sparse, const Reconstruction& by) {
-    return timed(times.reconstruct_ms,
-                 [&] { return by.frame(sparse, traced.map, guides ? &*guides : nullptr, settings_.threads); });
-  };
-  const auto reprojected = [&](Frame frame) {
-    return timed(times.temporal_ms, [&] {
-      const OtherView earlier{history.camera.value_or(request.camera),
-                              history.camera ? history.t_video_ns : request.t_video_ns};
-      const SurfaceMotion motion =
-          scene.surface_motion(request.camera, traced.map.width_px, traced.map.height_px, earlier);
-      return reproject(std::move(frame), traced.map, motion, request, settings_.accumulate, history, settings_.threads);
+    first_hits = timed(times.guides_ms, [&] {
+      return tracer_->at(shutter_of(request)).guides(request.camera, request.width_px, request.height_px, *wanted);
     });
-  };
-  if (settings_.accumulate.mode != AccumulateMode::reproject) {
-    Frame frame = filtered(traced.sparse, reconstruction_);
-    rendered.frame = timed(times.temporal_ms, [&] {
-      return accumulate(std::move(frame), request, settings_.accumulate, history, settings_.threads);
-    });
-  } else if (settings_.accumulate.order == AccumulateOrder::before && !reconstruction_.needs().surfaces) {
-    const Frame sites = reprojected(filtered(traced.sparse, Reconstruction({"none"})));
-    rendered.frame = filtered(sites_of_frame(sites, traced.sparse, traced.map), reconstruction_);
-  } else {
-    rendered.frame = reprojected(filtered(traced.sparse, reconstruction_));
   }
-  std::vector<ImageRgb> light = filtered_light(traced, times);
-  rendered.map = std::move(traced.map);
-  rendered.samples = std::move(traced.sparse.stats);
-  rendered.pilot = std::move(traced.pilot);
-  rendered.prediction = traced.prediction;
+  rendered.frame = timed(times.reconstruct_ms, [&] {
+    return reconstruction_.frame(shown, map, first_hits ? &*first_hits : nullptr, settings_.threads);
+  });
+  std::vector<ImageRgb> light = filtered_light(shown, map, times);
+  rendered.map = std::move(own.map);
+  rendered.samples = std::move(own.sparse.stats);
+  rendered.pilot = std::move(own.pilot);
+  rendered.prediction = own.prediction;
   history.passed.push_back(request.frame);
   expose(request, settings_, history, rendered);
   add_layers(request, std::move(light), rendered);
   return rendered;
-}
-
-bool uses_history(const FrameSettings& settings) {
-  return settings.accumulate.mode == AccumulateMode::running || settings.accumulate.mode == AccumulateMode::reproject ||
-         (settings.exposure.mode == ExposureMode::log_average && settings.exposure.smoothing_s > 0);
 }
 
 void expose(const FrameRequest& request, const FrameSettings& settings, TemporalHistory& history,

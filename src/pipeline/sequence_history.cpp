@@ -33,7 +33,7 @@ void take_back(std::int32_t first, TemporalHistory& history) {
 }
 
 bool is_hollow(const TemporalHistory& history) {
-  return !history.passed.empty() && history.radiance_sum.pixels.empty() && !history.smoothed_ev;
+  return !history.passed.empty() && !history.smoothed_ev;
 }
 
 }  // namespace

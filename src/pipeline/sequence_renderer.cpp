@@ -8,7 +8,7 @@ namespace gazetrace {
 SequenceRenderer::SequenceRenderer(PathTracer& tracer, FrameSettings settings, const FramePlan& plan,
                                    std::set<std::int32_t> counted)
     : renderer_(tracer, std::move(settings)) {
-  if (renderer_.settings().accumulate.mode == AccumulateMode::two_sided) {
+  if (renderer_.settings().accumulate.mode == AccumulateMode::window) {
     window_.emplace(renderer_, plan, std::move(counted));
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders the frames of one sequence in their order, in the way that its settings ask for: each by itself, or beside
-// those around it (FrameWindow). Frames at rest share what they have learned of their light.
+// those around it (JoinedFrames). Frames at rest share what they have learned of their light.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include <set>
 
 #include "gazetrace/frame_renderer.hpp"
-#include "pipeline/frame_window.hpp"
+#include "pipeline/joined_frames.hpp"
 
 namespace gazetrace {
 
@@ -27,7 +27,7 @@ class SequenceRenderer {
 
  private:
   const FrameRenderer renderer_;
-  std::optional<FrameWindow> window_;
+  std::optional<JoinedFrames> window_;
   KnownLight light_;
 };
 

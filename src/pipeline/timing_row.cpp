@@ -75,6 +75,7 @@ void add_pilot(const TraceStats& pilot, TimingRow& row) {
 
 void add_others(const TraceStats& others, TimingRow& row) {
   add_trace(others, row);
+  row.other_samples += others.samples;
 }
 
 void add_samples(const TraceStats& samples, const TraceStats& pilot, const SamplingMap& map, TimingRow& row) {

@@ -119,7 +119,7 @@ DenoiserInput denoiser_input(const SparseFrame& sparse, const SamplingMap& map, 
   const FilterInput input{sparse, values, map, &guides, threads};
   std::optional<LightAround> around;
   const bool has_empty = std::find(sparse.count.begin(), sparse.count.end(), 0U) != sparse.count.end();
-  if (has_empty || !sparse.samples_of_others.empty()) {
+  if (has_empty) {
     around.emplace(input);
   }
   DenoiserInput out;
@@ -143,7 +143,7 @@ DenoiserInput denoiser_input(const SparseFrame& sparse, const SamplingMap& map, 
       const float rays = share * static_cast<float>(kDenoiserGuideRays);
       // Samples of a larger site are not those of its pixels, and only where the guides know nothing better than them.
       const float samples = site.pixels == 1 ? static_cast<float>(sparse.count[i]) : 1.0F - share;
-      const bool by_samples = sparse.count[i] > 0 && sparse.samples_of_others.empty();
+      const bool by_samples = sparse.count[i] > 0;
       for_each_pixel(map, site, [&](int x, int y) {
         const std::size_t p = out.radiance.index(x, y);
         const Features by_guides = seen_by_guides(guides, p);

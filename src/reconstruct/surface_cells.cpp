@@ -11,10 +11,6 @@
 namespace gazetrace {
 namespace {
 
-// More samples of other frames for each of the frame's own do not count, so that a surface on which there is a fovea's
-// worth of them does not hide what lies beside it.
-constexpr float kMostOthers = 32;
-
 SurfaceCell cell_of(const SurfaceSums& sums, float block_px, float pixel_m, bool perspective) {
   const auto n = static_cast<float>(sums.count);
   SurfaceCell cell;
@@ -98,10 +94,6 @@ SurfaceCells make_surface_cells(const SparseFrame& sparse, const SamplingMap& ma
       for_each_pixel(map, map.sites[i], [&](int x, int y) { out.site_of_pixel(x, y) = static_cast<std::uint32_t>(i); });
       for (std::size_t s = out.first[i]; s < out.first[i + 1]; ++s) {
         out.cells[s] = cell_of(sparse.surfaces[s], block, pixel_m, camera.perspective);
-        if (!sparse.samples_of_others.empty()) {
-          const float most = kMostOthers * out.cells[s].samples;
-          out.cells[s].samples += std::min(static_cast<float>(sparse.samples_of_others[s]), most);
-        }
       }
     }
   });

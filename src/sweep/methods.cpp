@@ -61,12 +61,13 @@ std::string views_of(const SweepPlan& plan) {
 
 // Said where frames use others that come after them.
 std::string not_causal(const SweepPlan& plan) {
-  const bool two_sided = std::any_of(plan.tests.begin(), plan.tests.end(), [](const SweepTest& test) {
-    return test.pipeline.accumulate.mode == AccumulateMode::two_sided;
+  const bool reads_ahead = std::any_of(plan.tests.begin(), plan.tests.end(), [](const SweepTest& test) {
+    return test.pipeline.accumulate.future_frames > 0;
   });
-  return two_sided ? "Rows with `accumulate` two-sided are not causal (causal = false): their frames use frames that "
-                     "come after them, which cannot be done while somebody looks. "
-                   : "";
+  return reads_ahead
+             ? "Rows whose `accumulate-future` is not 0s are not causal (causal = false): their frames use frames that "
+               "come after them, which cannot be done while somebody looks. "
+             : "";
 }
 
 // How the light of the references was computed, which may differ from how that of the tests was.

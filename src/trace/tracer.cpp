@@ -117,6 +117,16 @@ SurfaceMotion PosedScene::surface_motion(const Camera& camera, int width_px, int
                               tracer_->options.threads);
 }
 
+PixelHits PosedScene::pixel_hits(const OtherView& view, int width_px, int height_px) const {
+  tracer_->pose(times_);
+  return trace_pixel_hits(tracer_->render_scene, view, width_px, height_px, tracer_->options.threads);
+}
+
+HitPlaces PosedScene::places_of(const PixelHits& seen, const OtherView& other) const {
+  tracer_->pose(times_);
+  return places_of_hits(*tracer_->scene, tracer_->render_scene, seen, other, tracer_->options.threads);
+}
+
 const Scene& PathTracer::scene() const {
   return *impl_->scene;
 }

@@ -4,7 +4,7 @@
 
   fixed_quality.py GAZETRACE OUT_FOLDER --scene "NAME FILE OPTIONS" [--scene ...] [--display desktop|hmd|WxH@PPD] [--frames 24]
                    [--gazes "0.5,0.5 0.25,0.6 0.75,0.35"] [--targets 8.5,9,9.5] [--budgets 0.5,1,2,4,8,16]
-                   [--accumulate "two-sided --accumulate-window 8"]
+                   [--accumulate "window --accumulate-past 340ms --accumulate-future 340ms"]
                    [--wrong-budget 4] [--wrong-seeds 4] [--moving] [--reference-spp 4096]
                    [--raw-rates 1,4,16,...,65536] [--inner 96] [--margin 32] [--stride 480] [--whole] [--paper] [--tool-in-windows]
 
@@ -400,7 +400,7 @@ def main():
     parser.add_argument("--gazes", default="0.5,0.5 0.25,0.6 0.75,0.35")
     parser.add_argument("--targets", default="8.5,9,9.5")
     parser.add_argument("--budgets", default="0.5,1,2,4,8,16")
-    parser.add_argument("--accumulate", default="two-sided --accumulate-window 8")
+    parser.add_argument("--accumulate", default="window --accumulate-past 340ms --accumulate-future 340ms")
     parser.add_argument("--wrong-budget", type=float, default=0)
     parser.add_argument("--wrong-seeds", type=int, default=1)
     parser.add_argument("--moving", action="store_true")

@@ -3,7 +3,7 @@
 """What foveation saves and how much of the saving arrives: a uniform frame beside foveated ones, in one run.
 
   foveation_efficiency.py GAZETRACE SCENE --frame 24 [--rounds N] [--before N] [--samples 32,16,8 32,8,4]
-                          [--filters linear guided] [--accumulate off reproject] [options of `gazetrace render` ...]
+                          [--filters linear guided] [--accumulate off window] [options of `gazetrace render` ...]
 
 Renders the frame with the same rate everywhere (regions of equal rate and 1 x 1 blocks, so that the time of each region is
 known) and with every combination of the foveated settings, one after another, and reads their timing.csv. Foveated runs

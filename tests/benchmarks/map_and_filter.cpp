@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CPU time per 3840x2160 frame of what foveation adds around tracing: the sampling map, the filters, accumulation.
+// CPU time per 3840x2160 frame of what foveation adds around tracing: the sampling map, the filters.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -54,15 +54,6 @@ void bench_filter(benchmark::State& state, bool foveated, const std::array<doubl
   }
 }
 
-void bench_accumulate(benchmark::State& state) {
-  const SamplingMap map = paper_map(true, kDiameter);
-  Frame frame = Reconstruction({"none"}).frame(sparse_frame(map), map, nullptr, 1);
-  TemporalHistory history;
-  for (auto _ : state) {
-    frame = accumulate(std::move(frame), {}, {AccumulateMode::running}, history, 1);
-  }
-}
-
 BENCHMARK_CAPTURE(bench_map, diameter, true, kDiameter)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(bench_map, radius, true, kRadius)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(bench_map, uniform, false, kDiameter)->Unit(benchmark::kMillisecond);
@@ -70,7 +61,6 @@ BENCHMARK_CAPTURE(bench_filter, none_diameter, true, kDiameter, "none")->Unit(be
 BENCHMARK_CAPTURE(bench_filter, linear_diameter, true, kDiameter, "linear")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(bench_filter, linear_radius, true, kRadius, "linear")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(bench_filter, linear_uniform, false, kDiameter, "linear")->Unit(benchmark::kMillisecond);
-BENCHMARK(bench_accumulate)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace gazetrace

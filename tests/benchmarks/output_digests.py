@@ -46,10 +46,10 @@ RENDERS = {
     "density-geisler-perry": [*STILL, *GAZE_AT, "--density", "geisler-perry", "--spp", "8"],
     "walk": [*WALK, *SMALL, "--filter", "linear"],
     "walk-guided": [*WALK, *SMALL],
-    "accumulate-reproject": [*WALK, *SMALL, "--accumulate", "reproject"],
-    "accumulate-before": [*WALK, *SMALL, "--accumulate", "reproject", "--accumulate-order", "before"],
-    "accumulate-running": [*COURTYARD, "--camera", "still", "--gaze", "gazelogs/tx300_left.csv", "--size", "96x54",
-                           "--fps", "10", "--frames", "1-4", *SMALL, "--accumulate", "running"],
+    "accumulate-window": [*WALK, *SMALL, "--accumulate", "window"],
+    "accumulate-past": [*WALK, *SMALL, "--accumulate", "window", "--accumulate-future", "0s"],
+    "accumulate-at-rest": [*COURTYARD, "--camera", "still", "--gaze", "gazelogs/tx300_left.csv", "--size", "96x54",
+                           "--fps", "10", "--frames", "1-4", *SMALL, "--accumulate", "window"],
     "exposure-smoothing": [*WALK, *SMALL, "--exposure-smoothing", "500ms", "--checkpoint", "{out}/history.bin"],
     "motion-blur": [*WALK, *SMALL, "--shutter", "180deg"],
     "lens": [*STILL, *GAZE_AT, *SMALL, "--aperture", "f/1.4", "--focus-distance", "4"],
@@ -172,7 +172,7 @@ def compare_job(program, book):
 
 
 def timing_job(book):
-    for name in ["walk", "accumulate-reproject", "density-acuity"]:
+    for name in ["walk", "accumulate-window", "density-acuity"]:
         for path in sorted((book.folder / name).glob("*timing*.csv")):
             book.text(f"counts of {name}", counted_columns(path), exact=True)
 

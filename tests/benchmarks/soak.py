@@ -34,7 +34,7 @@ from farm_test import SWEEP_TOML  # noqa: E402
 from sweep_chunks_test import TIMES  # noqa: E402
 
 FRAMES = 6
-HISTORY = 'accumulate = "reproject"\nfilter = "guided"\n'
+HISTORY = 'exposure = "auto"\nexposure-smoothing = "1s"\nfilter = "guided"\n'
 RENDER = ["render", "--config", "job.toml", "--resume", "--quiet", "--grace", "50ms"]
 
 

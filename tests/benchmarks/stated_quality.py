@@ -4,7 +4,7 @@
 
   stated_quality.py GAZETRACE OUT_FOLDER --scene "NAME FILE OPTIONS" [--scene ...] [--targets 8.5,9]
                     [--filters none] [--samplings uniform] [--gazes "0.5,0.5 0.25,0.6"] [--size 256x144] [--ppd 28]
-                    [--frames 24] [--reference-spp 4096] [--seed 1] [--with "--accumulate two-sided --accumulate-window 11"]
+                    [--frames 24] [--reference-spp 4096] [--seed 1] [--with "--accumulate window --accumulate-past 460ms --accumulate-future 460ms"]
                     [--pyfvvdp]
 
 OPTIONS are those of `gazetrace render`. Views are at rest, so that one reference stands for all frames; it is rendered in

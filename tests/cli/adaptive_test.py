@@ -112,7 +112,7 @@ class Adaptive(harness.CliTest):
         def samples(folder):
             return int(self.rows(folder)[1]["samples"])  # the first row counts the choice, too
 
-        both = ["--accumulate", "two-sided", "--accumulate-window", "4"]
+        both = ["--accumulate", "window", "--accumulate-past", "0.17s", "--accumulate-future", "0.17s"]
         clip("whole", "1-6", *both)
         clip("alone", "1-6")
         # Each frame shares in the samples of four more, or of eight.
@@ -134,7 +134,7 @@ class Adaptive(harness.CliTest):
             return json.loads((self.folder / f"{test}.json").read_text())["sequence"][0]["scores"][0]["value"]
 
         for name, more in (("default", []), ("pixels", ["--max-block", "1"]), ("blocks", ["--max-block", "4"])):
-            self.render(name, *GAZE, "--spp", "3", "--frames", "1-3", "--accumulate", "two-sided", *more)
+            self.render(name, *GAZE, "--spp", "3", "--frames", "1-3", "--accumulate", "window", *more)
         self.assertEqual(difference("pixels"), 0)
         self.assertGreater(difference("blocks"), 0)
 
@@ -152,7 +152,7 @@ class Adaptive(harness.CliTest):
         for limit, is_told in ((None, True), ("4", False)):
             folder = f"blocks-{limit}"
             more = ["--max-block", limit] if limit else []
-            self.run_ok("render", "box.gltf", *VIEW, "--spp", "3", "--accumulate", "two-sided", *more, "--frames", "1-2", "-o",
+            self.run_ok("render", "box.gltf", *VIEW, "--spp", "3", "--accumulate", "window", *more, "--frames", "1-2", "-o",
                         f"{folder}/f.####.exr")
             self.assertEqual("max-block" in self.record(folder)["facts"], is_told)
 
@@ -166,8 +166,8 @@ class Adaptive(harness.CliTest):
         # deviation, by twelve of these clips.
         gaze = ["--gaze-at", "0.5,0.5", "--screen-px", "160,100", "--screen-ppd", "12"]
         view = ["--size", "160x100", *VIEW[2:-2], *gaze]
-        tool = [*view, "--sampling", "adaptive", "--max-block", "1", "--filter", "guided", "--accumulate", "two-sided",
-                "--accumulate-window", "4"]
+        tool = [*view, "--sampling", "adaptive", "--max-block", "1", "--filter", "guided", "--accumulate", "window",
+                "--accumulate-past", "0.17s", "--accumulate-future", "0.17s"]
 
         def clip(folder, frames, *more):
             self.run_ok("render", "box.gltf", *tool, "--frames", frames, *more, "-o", f"{folder}/f.####.exr")
@@ -189,8 +189,8 @@ class Adaptive(harness.CliTest):
 
     def test_a_stated_quality_through_a_filter_by_threads_parts_and_resuming(self):
         def clip(folder, frames, *more):
-            self.run_ok("render", "box.gltf", *VIEW, *GAZE, "--max-block", "1", "--filter", "guided", "--accumulate", "two-sided",
-                        "--accumulate-window", "4", "--target-jod", "9", "--frames", frames, *more, "-o", f"{folder}/f.####.exr")
+            self.run_ok("render", "box.gltf", *VIEW, *GAZE, "--max-block", "1", "--filter", "guided", "--accumulate", "window",
+                        "--accumulate-past", "0.17s", "--accumulate-future", "0.17s", "--target-jod", "9", "--frames", frames, *more, "-o", f"{folder}/f.####.exr")
 
         clip("whole", "1-6")
         whole = self.pictures("whole")
@@ -234,7 +234,7 @@ class Adaptive(harness.CliTest):
         view = [*VIEW[:-3], *GAZE, "--target-jod", "7", "--frames", "1-2"]
         told = self.run_ok("render", "box.gltf", *view, "-o", "alone/f.####.exr").stderr
         self.assertIn("accumulate: off; the view is at rest", told)
-        told = self.run_ok("render", "box.gltf", *view, "--accumulate", "two-sided", "-o", "shared/f.####.exr").stderr
+        told = self.run_ok("render", "box.gltf", *view, "--accumulate", "window", "-o", "shared/f.####.exr").stderr
         self.assertNotIn("at rest, and with", told)
 
     def test_a_refusal_leaves_an_earlier_run_as_it_was(self):
@@ -261,11 +261,8 @@ class Adaptive(harness.CliTest):
             (["--target-jod", "--density"], *GAZE, "--density", "d.####.exr", "--target-jod", "9"),
             (["--target-jod", "9.5"], *RAW, "--target-jod", "10"),
             (["--target-jod", "--spp"], *RAW, "--target-jod", "9", "--spp", "3"),
-            (["--target-jod", "accumulate"], *RAW, "--target-jod", "9", "--accumulate", "running"),
             (["--target-jod", "max-spp"], *GAZE, "--sampling", "adaptive", "--target-jod", "9.99", "--max-spp", "4"),
             (["--target-jod", "about"], *RAW, "--target-jod", "9.99", "--max-spp", "10"),
-            (["--target-jod", "resets"], *RAW, "--target-jod", "9", "--accumulate", "two-sided",
-             "--accumulate-reset-saccades"),
             (["--target-jod", "raise --max-spp: fewer"], *GAZE, "--filter", "guided", "--target-jod", "5", "--max-spp", "0.1"),
             (["--target-jod", "--fps"], *RAW, "--target-jod", "9", "--fps", "3", "--frames", "1"),
             (["--chunk", "4294967295"], "--chunk", "1/4294967295"),

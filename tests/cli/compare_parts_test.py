@@ -64,7 +64,7 @@ class CompareParts(harness.CliTest):
         self.assert_compared_as_one("whole", "parts")
 
     def test_parts_joined_by_their_history(self):
-        history = ["--accumulate", "reproject"]
+        history = ["--exposure", "auto", "--exposure-smoothing", "0.5s"]
         self.render("whole", "--frames", "1-4", *history)
         self.render("parts", "--frames", "1-2", "--chunk", "1/1", *history, "--checkpoint", "history.bin")
         self.render("parts", "--frames", "3-4", "--chunk", "1/1", *history, "--resume-from", "history.bin")

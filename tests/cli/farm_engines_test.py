@@ -32,7 +32,7 @@ RETRIES_AT_ONCE = SEED % 2 == 1  # else once Slurm has canceled what depends on 
 WANTED = max(2, round(0.25 * CHUNKS))  # so many chunks are killed or put back
 DEADLINE_S = 36000 if BY_HAND else 500  # nothing is asserted of times; a queue that stands still must end some time
 
-HISTORY = 'accumulate = "reproject"\nfilter = "guided"\n'
+HISTORY = 'exposure = "auto"\nexposure-smoothing = "0.5s"\nfilter = "guided"\n'
 
 
 class RealEngines(harness.CliTest):

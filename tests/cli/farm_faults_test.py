@@ -157,7 +157,7 @@ class ResumeLosesNothing(Farm):
         self.assert_refused([*again, "--seed", "4"], ["2 finished frames", "no record"])
 
     def test_another_history_is_another_picture(self):
-        history = ["--accumulate", "reproject", "--chunk", "1/1"]
+        history = ["--exposure", "auto", "--exposure-smoothing", "0.5s", "--chunk", "1/1"]
         self.render("out", "--frames", "1-2", *history, "--checkpoint", "after-2")
         self.render("out", "--frames", "3-4", *history)
         joined = ["render", *JOB, *outputs("out"), "--frames", "3-4", *history, "--resume-from", "after-2", "--resume"]
@@ -168,7 +168,7 @@ class ResumeLosesNothing(Farm):
 
 class DigestsOfParts(Farm):
     def test_how_a_run_was_cut_is_not_in_its_files(self):
-        history = ["--accumulate", "reproject"]
+        history = ["--exposure", "auto", "--exposure-smoothing", "0.5s"]
         self.render("whole", "--frames", "1-6", *history)
         self.render("parts", "--frames", "1-3", "--chunk", "1/1", *history, "--checkpoint", "h")
         self.render("parts", "--frames", "4-6", "--chunk", "1/1", *history, "--resume-from", "h")
@@ -334,8 +334,8 @@ class Signals(Running):
         return line
 
     def test_each_signal_and_on_to_the_same_bits(self):
-        history = ["--accumulate", "reproject", "--checkpoint", "out/h"]
-        self.run_ok("render", *JOB, *outputs("whole"), *self.LONG, "--accumulate", "reproject")
+        history = ["--exposure", "auto", "--exposure-smoothing", "0.5s", "--checkpoint", "out/h"]
+        self.run_ok("render", *JOB, *outputs("whole"), *self.LONG, "--exposure", "auto", "--exposure-smoothing", "0.5s")
         for count, number in enumerate((signal.SIGTERM, signal.SIGUSR1, signal.SIGINT, signal.SIGXCPU)):
             ready = self.folder / f"out/f.{2 + 3 * count:04d}.exr"
             line = self.interrupt(ready.exists, number, *self.LONG, *history, *(["--resume"] if count else []))

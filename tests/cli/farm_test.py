@@ -13,7 +13,7 @@ from farm_faults_test import JOB_TOML, Farm
 from farm_harm import renderers
 from gliding_job import job_toml, processes_in
 
-HISTORY = ["--accumulate", "reproject", "--filter", "guided"]
+HISTORY = ["--exposure", "auto", "--exposure-smoothing", "0.5s", "--filter", "guided"]
 FRAMES = ["--frames", "1-6"]
 
 
@@ -46,10 +46,8 @@ class TracedFirst(Farm):
         self.assertEqual([row["samples"] for row in one.values()], [row["samples"] for row in two.values()])
         self.assertTrue(all(float(row["trace_ms"]) > 0 for row in two.values()))
 
-    def test_other_histories_and_samples_that_follow_the_picture(self):
-        for self.history in (["--accumulate", "running", "--filter", "linear", "--aov", "albedo,depth"],
-                             ["--accumulate", "reproject", "--accumulate-order", "before", "--filter", "linear"],
-                             [*HISTORY, "--density", "linear"],
+    def test_samples_that_follow_the_picture(self):
+        for self.history in ([*HISTORY, "--density", "linear"],
                              [*HISTORY, "--sampling", "adaptive", "--spp", "8"]):
             with self.subTest(self.history):
                 for folder in ("whole", "out"):
@@ -95,7 +93,7 @@ class TracedFirst(Farm):
         self.assertEqual(self.pictures("out"), self.whole())
 
     def test_what_cannot_be_divided_so(self):
-        for more, words in ((["--accumulate", "two-sided"], "frames read the samples of those around them"),
+        for more, words in ((["--accumulate", "window"], "frames read the samples of those around them"),
                             ([*HISTORY, "--preroll", "2"], "tracing needs no history"),
                             ([*HISTORY, "--only-pixel", "3,3"], "only one pixel")):
             refused = self.run_program("render", "--config", "job.toml", *FRAMES, "-o", "out/f.####.exr", "--stage", "trace",
@@ -185,7 +183,7 @@ reference-rate = 8
 metrics = ["mse"]
 controls = false
 """
-HISTORY_TOML = 'accumulate = "reproject"\nfilter = "guided"\n'
+HISTORY_TOML = 'exposure = "auto"\nexposure-smoothing = "0.5s"\nfilter = "guided"\n'
 
 
 class FarmFiles(Farm):

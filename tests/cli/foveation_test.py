@@ -90,7 +90,7 @@ class Foveation(harness.CliTest):
         self.write("box.gltf", json.dumps(harness.box_gltf()))
         for i, (expected, *more) in enumerate([
                 ("guided",), ("guided", "--sampling", "uniform", "--spp", "1"), ("guided", "--shutter", "0.5"),
-                ("linear", "--sampling", "uniform", "--spp", "1", "--accumulate", "running"),
+                ("guided", "--sampling", "uniform", "--spp", "1", "--accumulate", "window"),
                 ("none", "--filter", "none")]):
             self.run_ok("render", "box.gltf", *GAZE, *more, "-o", f"{i}/f.exr", "--quiet")
             record = json.loads(next((self.folder / str(i)).glob("*run*.json")).read_text())

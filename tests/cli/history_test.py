@@ -13,7 +13,8 @@ gaze = "log.csv"
 size = "160x90"
 frame-rect = [0, 0, 64, 36]
 region-samples = [16, 16, 16]
-accumulate = "reproject"
+exposure = "auto"
+exposure-smoothing = "0.5s"
 quiet = true
 """
 JOB = ["--config", "job.toml"]
@@ -52,21 +53,6 @@ class Histories(harness.CliTest):
             name = f"f.{frame:04d}.png"
             folder = "parts" if frame <= 5 else "rest"
             self.assertEqual(png_pixels(self.folder / folder / name), png_pixels(self.folder / "whole" / name))
-
-    def test_two_runs_joined_know_what_the_eye_did_between(self):
-        # Still, then from frame 2 to 3 a saccade, then still: of frames 1, 5 and 6 the second sees it.
-        self.write("log.csv", harness.gaze_csv(
-            f"{i * 2_000_000},{0.3 + 0.4 * min(max((i - 40) / 10, 0), 1):.4f},0.5,ok,cyclopean" for i in range(200)))
-        reset = [*SMALL, "--frame-rect", "0,0,64,36", "--accumulate-reset-saccades"]
-        whole = self.render("whole", *reset, "--frames", "1,5,6")
-        self.render("first", *reset, "--frames", "1", "--checkpoint", "history.bin")
-        rest = self.render("rest", *reset, "--frames", "5,6", "--resume-from", "history.bin")
-        self.assertEqual(sorted(rest), sorted(whole)[1:])
-        for name in rest:
-            self.assertEqual(png_pixels(self.folder / "rest" / name), png_pixels(self.folder / "whole" / name), name)
-        self.render("kept", *SMALL, "--frames", "1,5,6")
-        kept, reset_picture = (png_pixels(self.folder / folder / "f.0005.png") for folder in ("kept", "whole"))
-        self.assertNotEqual(kept, reset_picture)
 
     def record(self, path):
         return json.loads((self.folder / path).read_text())
@@ -199,13 +185,10 @@ class Histories(harness.CliTest):
             (["--frames", "4-5", "--resume-from", "history.bin", "--bounces", "2"], "other settings"),
             (["--frames", "4-5", "--resume-from", "nothing.bin"], "nothing.bin"),
             (["--frames", "4-5", "--resume-from", "log.csv"], "is no checkpoint"),
-            (["--frames", "4-5", "--accumulate", "off", "--preroll", "2"], "do not depend"),
-            (["--frames", "4-5", "--accumulate", "off", "--checkpoint", "x.bin"], "do not depend"),
+            (["--frames", "4-5", "--exposure-smoothing", "0s", "--preroll", "2"], "do not depend"),
+            (["--frames", "4-5", "--exposure-smoothing", "0s", "--checkpoint", "x.bin"], "do not depend"),
             (["--frames", "4-5", "--preroll", "2", "--resume-from", "history.bin"], "--preroll"),
             (["--frames", "4-5", "--checkpoint-every", "2"], "--checkpoint"),
-            (["--frames", "4-5", "--accumulate-blend", "1.5"], "outside 0..1"),
-            (["--frames", "4-5", "--accumulate-blend", "1e-160"], "give 1e-06 or more"),
-            (["--accumulate-order", "before", "--filter", "guided"], "--accumulate-order"),
             (["--animation", "walk"], "walk"),
         ]
         for options, text in cases:

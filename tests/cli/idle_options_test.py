@@ -28,15 +28,9 @@ class IdleOptions(harness.CliTest):
         return frame["traced_samples"], frame["regions"]
 
     def test_what_does_nothing_is_said(self):
-        reproject = ["--accumulate", "reproject"]
         for options, others in (
-            (["--accumulate-blend", "0.2"], []),
-            (["--accumulate-frames", "4"], []),
-            (["--accumulate-clip", "1"], []),
-            (["--accumulate-order", "before"], []),
-            (["--accumulate-reset-saccades"], []),
-            (["--accumulate-reset-blinks"], ["--accumulate", "running"]),
-            (["--accumulate-reset-blinks"], reproject),
+            (["--accumulate-past", "0.2s"], []),
+            (["--accumulate-future", "0.2s"], []),
             (["--block-samples", "4"], []),
             (["--max-block", "4"], []),
             (["--max-block", "4"], ["--sampling", "uniform"]),
@@ -54,7 +48,7 @@ class IdleOptions(harness.CliTest):
     def test_what_does_something_is_not(self):
         for options in (
             [],
-            ["--accumulate", "reproject", "--accumulate-blend", "0.2", "--accumulate-order", "before"],
+            ["--accumulate", "window", "--accumulate-past", "0.2s", "--accumulate-future", "0s"],
             ["--density", "mar", "--block-samples", "4", "--max-block", "4"],
             ["--region-samples", "4,4,4"],
             ["--density", "csf:eye=left,luminance=20,relative-to=fovea"],

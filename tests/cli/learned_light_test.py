@@ -38,7 +38,7 @@ class LearnedLight(harness.CliTest):
 
     def test_the_same_bits_however_it_is_rendered(self):
         for name, settings in (("foveated", GAZE), ("visible", [*GAZE, "--sampling", "adaptive", "--spp", "2"]),
-                               ("around", ["--sampling", "uniform", "--spp", "1", "--accumulate", "two-sided", "--accumulate-window", "1"])):
+                               ("around", ["--sampling", "uniform", "--spp", "1", "--accumulate", "window", "--accumulate-past", "0.05s", "--accumulate-future", "0.05s"])):
             with self.subTest(settings=name):
                 whole = self.render(f"{name}", *settings, "--threads", "1")
                 self.assertEqual(len(whole), 3)

@@ -77,7 +77,7 @@ class Sequences(harness.CliTest):
         self.check_kill_and_resume("--exposure", "auto", "--exposure-smoothing", "500ms")
 
     def test_resume_with_accumulation(self):
-        still = ["--eye", "0,1,4", "--target", "0,0,0", "--accumulate", "running"]
+        still = ["--eye", "0,1,4", "--target", "0,0,0", "--exposure", "auto", "--exposure-smoothing", "0.5s"]
         whole = self.render("whole", *still)
         self.render("again", *still)
         for name in ("f.0006.exr", "f.0009.png"):

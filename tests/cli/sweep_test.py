@@ -228,7 +228,7 @@ class Sweep(harness.CliTest):
         one = one.replace("repeats = 2", 'repeats = 1\nbaselines = ["none"]\ncontrols = false')
         one = one.replace('metrics = ["mse", "flip", "fovvideovdp"]\nquality = ["flip=0.05", "fovvideovdp=9.5"]', 'metrics = ["mse"]')
         for scene, more, frames in (("box", eye, 1), ("moving", "", 3), ("moving", eye, 3), ("camera", "", 3), ("camera", eye, 1),
-                                    ("box", 'accumulate = "running"\n', 1)):  # references gather nothing over time
+                                    ("box", 'accumulate = "window"\n', 1)):  # references gather nothing over time
             with self.subTest(scene=scene, more=more):
                 self.plan(one.replace('path = "box.gltf"\n', f'path = "{scene}.gltf"\n{more}'))
                 text = self.run_ok("sweep", "plan.toml", "--dry-run").stdout

@@ -50,13 +50,12 @@ FrameRequest request_of(std::int32_t frame) {
   return request;
 }
 
-FrameSettings settings_of(const std::string& filter, AccumulateMode mode = AccumulateMode::off) {
+FrameSettings settings_of(const std::string& filter) {
   FrameSettings settings;
   DensitySampling density = parse_density("mar");
   density.full_rate_spp = 8;
   settings.foveation.sampling = density;
   settings.reconstruction.filter = filter;
-  settings.accumulate.mode = mode;
   settings.threads = 2;
   return settings;
 }
@@ -98,45 +97,43 @@ TEST(FrameRenderer, IsWhatASequenceIsMadeOf) {
     plan.frames.push_back(request_of(frame));
   }
   const ColorPipeline color(ColorSettings{});
-  for (const AccumulateMode mode : {AccumulateMode::off, AccumulateMode::reproject}) {
-    PipelineSettings settings;
-    static_cast<FrameSettings&>(settings) = settings_of("guided", mode);
-    settings.exposure.mode = ExposureMode::log_average;
-    settings.exposure.smoothing_s = 0.2;
-    PathTracer tracer(scene, threads(2));
-    std::vector<std::pair<ImageRgb, double>> frames;
-    PipelineObserver observer;
-    observer.frame_ready = [&](const FrameRequest&, const Frame& frame, double ev) {
-      frames.emplace_back(frame.radiance, ev);
-    };
-    std::vector<RenderedFrame> taken;
-    observer.take_frame = [&](const FrameRequest& request, RenderedFrame&& rendered, const TimingRow& row) {
-      EXPECT_EQ(request.frame, row.frame);
-      EXPECT_GT(row.total_ms, 0);
-      taken.push_back(std::move(rendered));
-    };
-    const SequenceResult result = render_sequence(tracer, plan, color, settings, observer);
+  PipelineSettings settings;
+  static_cast<FrameSettings&>(settings) = settings_of("guided");
+  settings.exposure.mode = ExposureMode::log_average;
+  settings.exposure.smoothing_s = 0.2;
+  PathTracer tracer(scene, threads(2));
+  std::vector<std::pair<ImageRgb, double>> frames;
+  PipelineObserver observer;
+  observer.frame_ready = [&](const FrameRequest&, const Frame& frame, double ev) {
+    frames.emplace_back(frame.radiance, ev);
+  };
+  std::vector<RenderedFrame> taken;
+  observer.take_frame = [&](const FrameRequest& request, RenderedFrame&& rendered, const TimingRow& row) {
+    EXPECT_EQ(request.frame, row.frame);
+    EXPECT_GT(row.total_ms, 0);
+    taken.push_back(std::move(rendered));
+  };
+  const SequenceResult result = render_sequence(tracer, plan, color, settings, observer);
 
-    const FrameRenderer renderer(tracer, settings);
-    TemporalHistory history;
-    for (std::size_t i = 0; i < plan.frames.size(); ++i) {
-      const RenderedFrame rendered = renderer.render(plan.frames[i], history);
-      EXPECT_TRUE(same_picture(rendered.frame.radiance, frames[i].first, std::to_string(i + 1)));
-      EXPECT_EQ(rendered.exposure_ev, frames[i].second);
-      EXPECT_TRUE(same_picture(rendered.frame.radiance, taken.at(i).frame.radiance, std::to_string(i + 1)));
-      EXPECT_EQ(taken[i].map.samples(), rendered.map.samples());
-      EXPECT_EQ(rendered.samples.samples + rendered.pilot.samples, result.rows[i].samples);
-    }
-    EXPECT_EQ(history.passed, (std::vector<std::int32_t>{1, 2, 3, 4}));
+  const FrameRenderer renderer(tracer, settings);
+  TemporalHistory history;
+  for (std::size_t i = 0; i < plan.frames.size(); ++i) {
+    const RenderedFrame rendered = renderer.render(plan.frames[i], history);
+    EXPECT_TRUE(same_picture(rendered.frame.radiance, frames[i].first, std::to_string(i + 1)));
+    EXPECT_EQ(rendered.exposure_ev, frames[i].second);
+    EXPECT_TRUE(same_picture(rendered.frame.radiance, taken.at(i).frame.radiance, std::to_string(i + 1)));
+    EXPECT_EQ(taken[i].map.samples(), rendered.map.samples());
+    EXPECT_EQ(rendered.samples.samples + rendered.pilot.samples, result.rows[i].samples);
   }
+  EXPECT_EQ(history.passed, (std::vector<std::int32_t>{1, 2, 3, 4}));
 }
 
-// Each history is its own, and so is the pose that each frame asks for, whoever else uses the tracer.
+// The pose is that which each frame asks for, whoever else uses the tracer.
 TEST(FrameRenderer, TwoShareATracerAndDoNotMeet) {
   const Scene scene = room();
   PathTracer tracer(scene, threads(2));
-  const FrameRenderer one(tracer, settings_of("linear", AccumulateMode::reproject));
-  const FrameRenderer two(tracer, settings_of("guided", AccumulateMode::reproject));
+  const FrameRenderer one(tracer, settings_of("linear"));
+  const FrameRenderer two(tracer, settings_of("guided"));
   TemporalHistory alone;
   std::vector<ImageRgb> expected;
   for (std::int32_t frame = 1; frame <= 3; ++frame) {

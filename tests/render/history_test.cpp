@@ -57,10 +57,8 @@ FramePlan plan_of(int first, int last) {
   return plan;
 }
 
-PipelineSettings settings_of(AccumulateOrder order = AccumulateOrder::after) {
+PipelineSettings settings_of() {
   PipelineSettings settings;
-  settings.accumulate.mode = AccumulateMode::reproject;
-  settings.accumulate.order = order;
   settings.exposure.mode = ExposureMode::log_average;
   settings.exposure.smoothing_s = 0.2;
   std::get<RegionSampling>(settings.foveation.sampling).samples = {8, 4, 4};
@@ -92,23 +90,21 @@ std::map<std::int32_t, Rendered> render(const Scene& scene, const FramePlan& pla
 
 TEST(History, TwoRunsJoinedByACheckpointAreOneRunToTheBit) {
   const Scene scene = room();
-  for (const AccumulateOrder order : {AccumulateOrder::after, AccumulateOrder::before}) {
-    const TemporaryFolder folder;
-    const std::string file = folder / "history.bin";
-    const auto whole = render(scene, plan_of(1, 8), settings_of(order));
-    PipelineSettings first = settings_of(order);
-    first.checkpoint = file;
-    (void)render(scene, plan_of(1, 5), first);
-    PipelineSettings second = settings_of(order);
-    second.resume_from = file;
-    const auto rest = render(scene, plan_of(6, 8), second);
-    ASSERT_EQ(rest.size(), 3U);
-    for (const auto& [frame, rendered] : rest) {
-      EXPECT_EQ(rendered, whole.at(frame)) << frame;
-    }
-    // Without the history, frames differ.
-    EXPECT_NE(render(scene, plan_of(6, 8), settings_of(order)).at(6), whole.at(6));
+  const TemporaryFolder folder;
+  const std::string file = folder / "history.bin";
+  const auto whole = render(scene, plan_of(1, 8), settings_of());
+  PipelineSettings first = settings_of();
+  first.checkpoint = file;
+  (void)render(scene, plan_of(1, 5), first);
+  PipelineSettings second = settings_of();
+  second.resume_from = file;
+  const auto rest = render(scene, plan_of(6, 8), second);
+  ASSERT_EQ(rest.size(), 3U);
+  for (const auto& [frame, rendered] : rest) {
+    EXPECT_EQ(rendered, whole.at(frame)) << frame;
   }
+  // Without the history, frames differ.
+  EXPECT_NE(render(scene, plan_of(6, 8), settings_of()).at(6), whole.at(6));
 }
 
 TEST(History, FramesThatAreTracedInPartsAndFinishedInOrderAreOneRunToTheBit) {
@@ -178,33 +174,6 @@ TEST(Traced, EveryBitComesBackAndWhatDoesNotFitTogetherIsRefused) {
   }
 }
 
-TEST(History, CheckpointsThatDoNotFitTogetherAreRefused) {
-  const Scene scene = room();
-  const TemporaryFolder folder;
-  const std::string path = folder / "history.bin";
-  PathTracer tracer(scene, threads(2));
-  TemporalHistory history;
-  (void)FrameRenderer(tracer, settings_of()).render(plan_of(1, 1).frames.front(), history);
-  save_checkpoint(path, history, "d");
-  EXPECT_NO_THROW((void)load_checkpoint(path, "d"));
-  const std::vector<void (*)(TemporalHistory&)> changes{
-      [](TemporalHistory& wrong) { wrong.count_sum = Image<double>(1, 1); },
-      [](TemporalHistory& wrong) { wrong.variance_weight_sum = {}; },
-      [](TemporalHistory& wrong) { wrong.radiance_sum = Image<Vec3d>(48, 31); },
-      [](TemporalHistory& wrong) { wrong.surfaces.depth_m = {}; },
-      [](TemporalHistory& wrong) { wrong.surfaces.object = {}; },
-      [](TemporalHistory& wrong) { wrong.surfaces.residual = ImageGray(32, 48); },
-      [](TemporalHistory& wrong) { wrong.frames = -1; },
-      [](TemporalHistory& wrong) { wrong.camera->projection.kind = static_cast<ProjectionKind>(9); },
-  };
-  for (std::size_t i = 0; i < changes.size(); ++i) {
-    TemporalHistory wrong = history;
-    changes[i](wrong);
-    save_checkpoint(path, wrong, "d");
-    EXPECT_THROW((void)load_checkpoint(path, "d"), Error) << i;
-  }
-}
-
 TEST(History, CheckpointsComeAsOftenAsAskedAndTheLastOneStays) {
   const Scene scene = room();
   const TemporaryFolder folder;
@@ -232,21 +201,15 @@ TEST(History, PrerollComesNearer) {
     PipelineSettings settings = settings_of();
     settings.preroll = preroll;
     const auto some = render(scene, plan_of(12 - preroll, 12), settings);
-    double error = 0;
-    for (std::size_t i = 0; i < whole.at(12).radiance.pixels.size(); ++i) {
-      const double difference =
-          static_cast<double>(some.at(12).radiance.pixels[i].y - whole.at(12).radiance.pixels[i].y);
-      error += difference * difference;
-    }
+    const double error = std::fabs(some.at(12).ev - whole.at(12).ev);
     EXPECT_LT(error, 0.7 * previous) << preroll;
     previous = error;
   }
 }
 
-TEST(History, WithAccumulationOffNothingChanges) {
+TEST(History, WithoutSmoothingNothingChanges) {
   const Scene scene = room();
   PipelineSettings off = settings_of();
-  off.accumulate = {};
   off.exposure = {};
   const auto alone = render(scene, plan_of(3, 3), off);
   EXPECT_EQ(render(scene, plan_of(1, 3), off).at(3), alone.at(3));
@@ -254,19 +217,6 @@ TEST(History, WithAccumulationOffNothingChanges) {
 
 TemporalHistory some_history() {
   TemporalHistory history;
-  history.radiance_sum = Image<Vec3d>(3, 2, {0.1, -1e300, std::nan("")});
-  history.count_sum = Image<double>(3, 2, 1.0 / 3);
-  history.variance_weight_sum = Image<double>(3, 2, 5e-324);
-  history.surfaces.depth_m = ImageGray(3, 2, INFINITY);
-  history.surfaces.normal = ImageRgb(3, 2, {0, 0, 1});
-  history.surfaces.object = Image<std::uint32_t>(3, 2, 7);
-  history.surfaces.footprint_px = ImageGray(3, 2, 4);
-  history.surfaces.residual = ImageGray(3, 2, 0.75F);
-  history.camera = camera_at({1, 2, 3}, {0, 0, 0});
-  history.camera->shutter_poses = {history.camera->pose, history.camera->pose};
-  history.camera->lens.radius_m = 0.01;
-  history.t_video_ns = 9'007'199'254'740'993;
-  history.frames = 12;
   history.passed = {19, 20, 30};
   history.smoothed_ev = -1.5;
   history.smoothed_ev_t_ns = 77;
@@ -279,17 +229,13 @@ TEST(Checkpoint, EveryBitComesBack) {
   const std::string b = folder / "b";
   save_checkpoint(a, some_history(), "d");
   const TemporalHistory back = load_checkpoint(a, "d");
-  EXPECT_EQ(back.camera->shutter_poses.size(), 2U);
-  EXPECT_EQ(back.t_video_ns, 9'007'199'254'740'993);
-  EXPECT_TRUE(std::isnan(back.radiance_sum(2, 1).z));
-  EXPECT_EQ(back.surfaces.footprint_px(1, 1), 4.0F);
-  EXPECT_EQ(back.surfaces.residual(2, 1), 0.75F);
   EXPECT_EQ(back.smoothed_ev, -1.5);
+  EXPECT_EQ(back.smoothed_ev_t_ns, 77);
   EXPECT_EQ(back.passed, (std::vector<std::int32_t>{19, 20, 30}));
   save_checkpoint(b, back, "d");
   EXPECT_EQ(file_bytes(a), file_bytes(b));
   save_checkpoint(a, TemporalHistory{}, "d");
-  EXPECT_FALSE(load_checkpoint(a, "d").camera);
+  EXPECT_FALSE(load_checkpoint(a, "d").smoothed_ev);
 }
 
 TEST(Checkpoint, DamageAndOtherSettingsAreRefused) {
@@ -309,13 +255,12 @@ TEST(Checkpoint, DamageAndOtherSettingsAreRefused) {
   EXPECT_THROW((void)load_checkpoint(path, "others"), Error);
   const std::string good = file_bytes(path);
   const auto write = [&](const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; };
-  for (std::size_t at = good.find('\n') + 1; at < good.size(); at += 41) {
+  for (std::size_t at = good.find('\n') + 1; at < good.size(); at += 3) {
     std::string bad = good;
     bad[at] = static_cast<char>(bad[at] ^ 16);
     write(bad);
     EXPECT_THAT(message(), ::testing::HasSubstr("the checkpoint is damaged")) << at;
   }
-  ASSERT_GT(good.size(), 500U);
   for (const std::size_t length : {good.size() - 1, good.size() / 2, good.find('\n') + 3}) {
     write(good.substr(0, length));
     EXPECT_THAT(message(), ::testing::HasSubstr("the checkpoint is damaged")) << length;

@@ -218,76 +218,44 @@ TEST(LightGroups, LayersAddUpToThePictureUnderEveryFilter) {
   }
 }
 
-// Three frames of a camera that glides, as all the ways of accumulation make the last of them.
-RenderedFrame accumulated(PathTracer& tracer, const AccumulateSettings& accumulate, bool light) {
+// The last of three frames of a camera that glides, with what the others saw or without.
+RenderedFrame third_frame(PathTracer& tracer, AccumulateMode mode, bool light) {
   FrameSettings settings;
   DensitySampling density = parse_density("mar");
   density.full_rate_spp = 8;
   settings.foveation.sampling = density;
   settings.reconstruction.filter = "linear";
-  settings.accumulate = accumulate;
+  settings.accumulate.mode = mode;
   settings.layers.light = light;
   settings.threads = 2;
   const FrameRenderer renderer(tracer, settings);
-  TemporalHistory history;
-  std::vector<ReconstructedFrame> window;
-  RenderedFrame last;
+  std::vector<WindowFrame> frames;
+  KnownLight learned;
   for (int frame = 1; frame <= 3; ++frame) {
     FrameRequest one = request();
     one.frame = frame;
     one.t_video_ns = one.shutter_open_ns = one.shutter_close_ns = 40'000'000LL * frame;
-    if (accumulate.mode != AccumulateMode::running) {  // which joins frames of a camera that stands still
-      one.camera = camera_at({0.02 * (frame - 3), 1, 5}, {0, 0, 0});
-    }
-    if (accumulate.mode == AccumulateMode::two_sided) {
-      window.push_back(renderer.reconstruct(one));
-    } else {
-      last = renderer.render(one, history);
-    }
+    one.camera = camera_at({0.02 * (frame - 3), 1, 5}, {0, 0, 0});
+    frames.push_back(renderer.window_frame(one, learned));
   }
-  return window.empty() ? std::move(last) : renderer.join({&window[0], &window[1], &window[2]}, 2, history);
+  TemporalHistory history;
+  return mode == AccumulateMode::window ? renderer.finish({&frames[0], &frames[1], &frames[2]}, 2, history)
+                                        : renderer.finish({&frames[2]}, 0, history);
 }
 
-// A group is then the picture times the share that the group has of the light of the frame's own samples.
-TEST(LightGroups, LayersAddUpToAccumulatedPictures) {
+TEST(LightGroups, LayersAddUpToPicturesThatOtherFramesJoin) {
   const Scene scene = room();
   PathTracer tracer(scene, threads(2));
-  const RenderedFrame own = accumulated(tracer, {}, true);
-  struct Way {
-    AccumulateMode mode;
-    AccumulateOrder order;
-  };
-  for (const Way& way :
-       {Way{AccumulateMode::running, AccumulateOrder::after}, Way{AccumulateMode::reproject, AccumulateOrder::after},
-        Way{AccumulateMode::reproject, AccumulateOrder::before},
-        Way{AccumulateMode::two_sided, AccumulateOrder::after}}) {
-    const auto name = std::to_string(static_cast<int>(way.mode)) + '/' + std::to_string(static_cast<int>(way.order));
-    AccumulateSettings accumulate;
-    accumulate.mode = way.mode;
-    accumulate.order = way.order;
-    const RenderedFrame plain = accumulated(tracer, accumulate, false);
-    const RenderedFrame grouped = accumulated(tracer, accumulate, true);
-    EXPECT_EQ(plain.frame.radiance, grouped.frame.radiance) << name;
-    EXPECT_NE(grouped.frame.radiance, own.frame.radiance) << name;  // the frames before came into it
-    ASSERT_EQ(grouped.layers.light.size(), kLightGroups);
-    const double worst = worst_difference(
-        grouped.frame.radiance.pixels.size(),
-        [&](std::size_t g, std::size_t i) { return grouped.layers.light[g].pixels[i]; },
-        [&](std::size_t i) { return grouped.frame.radiance.pixels[i]; });
-    EXPECT_LT(worst, 1e-4) << name;
-    double worst_share = 0;
-    for (std::size_t i = 0; i < own.frame.radiance.pixels.size(); ++i) {
-      for (int c = 0; c < 3; ++c) {
-        const double ours = channel(own.frame.radiance.pixels[i], c);
-        const double theirs = channel(grouped.frame.radiance.pixels[i], c);
-        for (std::size_t g = 0; g < kLightGroups && ours > 0 && theirs > 0; ++g) {
-          const double share = channel(own.layers.light[g].pixels[i], c) / ours;
-          worst_share = std::max(worst_share, std::abs(share - channel(grouped.layers.light[g].pixels[i], c) / theirs));
-        }
-      }
-    }
-    EXPECT_LT(worst_share, 1e-4) << name;
-  }
+  const RenderedFrame plain = third_frame(tracer, AccumulateMode::window, false);
+  const RenderedFrame grouped = third_frame(tracer, AccumulateMode::window, true);
+  EXPECT_EQ(plain.frame.radiance, grouped.frame.radiance);
+  EXPECT_NE(grouped.frame.radiance, third_frame(tracer, AccumulateMode::off, true).frame.radiance);
+  ASSERT_EQ(grouped.layers.light.size(), kLightGroups);
+  const double worst = worst_difference(
+      grouped.frame.radiance.pixels.size(),
+      [&](std::size_t g, std::size_t i) { return grouped.layers.light[g].pixels[i]; },
+      [&](std::size_t i) { return grouped.frame.radiance.pixels[i]; });
+  EXPECT_LT(worst, 1e-4);
 }
 
 }  // namespace

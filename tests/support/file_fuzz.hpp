@@ -53,7 +53,7 @@ struct SmallRun {
   FrameRequest request;
   FrameSettings settings;
 
-  explicit SmallRun(AccumulateMode mode = AccumulateMode::reproject) {
+  SmallRun() {
     scene.materials = {test::diffuse_material({0.8F, 0.7F, 0.6F})};
     scene.environment = constant_environment({1, 1, 1});
     test::add_mesh(scene, test::box(0.6F, false, 0));
@@ -65,7 +65,6 @@ struct SmallRun {
     request.gaze_direction_render = request.gaze_direction_true = request.view.direction(4, 3);
     std::get<RegionSampling>(settings.foveation.sampling).samples = {4, 2, 2};
     settings.reconstruction.filter = "guided";
-    settings.accumulate.mode = mode;
     settings.exposure.mode = ExposureMode::log_average;
     settings.exposure.smoothing_s = 0.2;
     settings.threads = 1;
@@ -134,7 +133,7 @@ inline void check_scene(const Scene& scene) {
 
 // A frame of a few pixels with an open shutter, through guides, filter and all.
 inline void render_scene(Scene scene) {
-  SmallRun run(AccumulateMode::off);
+  SmallRun run;
   scene.environment = constant_environment({0.5F, 0.6F, 0.7F});
   std::int64_t end_ns = 0;
   for (const Motion& motion : scene.motions) {
@@ -214,18 +213,15 @@ inline void read_job(const std::string& path) {
 // A frame goes on from the history of the file.
 inline void read_checkpoint(const std::string& path) {
   TemporalHistory history = load_checkpoint(path, kDigest);
-  for (const AccumulateMode mode : {AccumulateMode::reproject, AccumulateMode::running}) {
-    SmallRun run(mode);
-    run.request.frame = 3;
-    PathTracer tracer(run.scene, test::threads(1));
-    TemporalHistory own = history;
-    static_cast<void>(FrameRenderer(tracer, run.settings).render(run.request, own));
-  }
+  SmallRun run;
+  run.request.frame = 3;
+  PathTracer tracer(run.scene, test::threads(1));
+  static_cast<void>(FrameRenderer(tracer, run.settings).render(run.request, history));
 }
 
 inline void read_traced(const std::string& path) {
   TracedFrame traced = load_traced(path, 1, kDigest);
-  SmallRun run(AccumulateMode::off);
+  SmallRun run;
   run.request.width_px = traced.map.width_px;
   run.request.height_px = traced.map.height_px;
   if (std::int64_t{run.request.width_px} * run.request.height_px > 65536) {

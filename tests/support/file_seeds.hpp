@@ -135,18 +135,15 @@ inline void add_pictures(std::vector<FileSeed>& files, const std::string& folder
 
 inline void add_sealed(std::vector<FileSeed>& files, const std::string& folder) {
   const std::string path = folder + "/seed.bin";
-  for (const AccumulateMode mode : {AccumulateMode::reproject, AccumulateMode::running}) {
-    fuzz::SmallRun run(mode);
-    PathTracer tracer(run.scene, test::threads(1));
-    const FrameRenderer renderer(tracer, run.settings);
-    TemporalHistory history;
-    static_cast<void>(renderer.render(run.request, history));
-    save_checkpoint(path, history, fuzz::kDigest);
-    files.push_back(
-        {"checkpoint", mode == AccumulateMode::running ? "running" : "reproject", gazetrace::read_file(path)});
-    save_traced(path, 1, renderer.trace(run.request), fuzz::kDigest);
-    files.push_back({"traced", mode == AccumulateMode::running ? "running" : "reproject", gazetrace::read_file(path)});
-  }
+  fuzz::SmallRun run;
+  PathTracer tracer(run.scene, test::threads(1));
+  const FrameRenderer renderer(tracer, run.settings);
+  TemporalHistory history;
+  static_cast<void>(renderer.render(run.request, history));
+  save_checkpoint(path, history, fuzz::kDigest);
+  files.push_back({"checkpoint", "smoothed", gazetrace::read_file(path)});
+  save_traced(path, 1, renderer.trace(run.request), fuzz::kDigest);
+  files.push_back({"traced", "guided", gazetrace::read_file(path)});
 }
 
 }  // namespace seeds

@@ -163,7 +163,7 @@ int run_plan(const PlanArguments& arguments) {
   const ResolvedJob resolved = resolve(arguments.job, resolving);
   print_warnings(resolved.warnings);
   for (const auto& [name, text] : resolved.decisions) {
-    if (name.starts_with("replaced ")) {
+    if (name.starts_with("replaced ") || name == "accumulate") {
       std::fprintf(stderr, "%s: %s\n", name.c_str(), with_flags(text).c_str());
     }
   }

@@ -40,10 +40,8 @@ void add_filter_options(JobSchema& schema) {
   schema
       .value("--filter", &JobSettings::filter, "NAME", Touch::filter,
              "Fills pixels between samples and takes noise away ('gazetrace list filters'; where the samples are is "
-             "--density, which has a 'linear', too). auto: oidn where Open Image Denoise is found and frames are not "
-             "accumulated, else guided; linear, "
-             "which passes single pixels through, with --accumulate-order before, and for uniform frames "
-             "with --accumulate running or --only-pixel")
+             "--density, which has a 'linear', too). auto: oidn where Open Image Denoise is found, else guided; linear, "
+             "which passes single pixels through, for uniform frames with --only-pixel")
       .checked_by(check_filter_name)
       .with(Trait::always_stated)
       .with(Trait::everyday);

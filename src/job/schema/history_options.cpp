@@ -9,59 +9,26 @@ constexpr auto accumulate(auto member) {
   return at(&JobSettings::accumulate, member);
 }
 
-constexpr const char* kNeedsHistory = "`accumulate` or `exposure-smoothing`";
+constexpr const char* kNeedsHistory = "`exposure-smoothing`";
 
-void add_reproject_options(JobSchema& schema) {
-  using A = AccumulateSettings;
+void add_window_options(JobSchema& schema) {
   schema
-      .value("--accumulate-window", accumulate(&A::window), "N", Touch::history,
-             "two-sided: reads N frames before each frame and N after it; those outside the rendered range are traced "
+      .value("--accumulate-past", &JobSettings::accumulate_past, "DURATION", Touch::history,
+             "window: reads the frames of so much time before each frame; those outside the rendered range are traced "
              "for it")
-      .within(0, 100)
-      .idle_when({without_two_sided()});
+      .within(0, 10'000'000'000)
+      .idle_when({without_window()});
   schema
-      .value("--accumulate-hold", accumulate(&A::hold), "N", Touch::history,
-             "two-sided, where nothing moves: N frames after each other show one sum, which is filtered once; 0: a "
-             "third of --accumulate-window. More than --accumulate-window + 1 counts as that")
-      .within(0, 100)
-      .idle_when({without_two_sided()});
-  schema
-      .value("--accumulate-order", accumulate(&A::order), choices<AccumulateOrder>(), Touch::history,
-             "reproject: accumulates before or after the filter fills the pixels between samples; guided allows only "
-             "after")
-      .idle_when({without_reproject()});
-  schema
-      .value("--accumulate-frames", accumulate(&A::frames), "N", Touch::history,
-             "reproject, two-sided: the memory's length in frames: a pixel gathers up to N times a frame's samples; 0: "
-             "unlimited")
-      .within(0, 1e9)
-      .idle_when({without_reprojection()});
-  schema
-      .value("--accumulate-blend", accumulate(&A::blend), "SHARE", Touch::history,
-             "reproject, two-sided: fixed weight of the current frame where there is history, 1e-6 to 1; 0: weights by "
-             "numbers of samples")
-      .within(0, 1)
-      .idle_when({without_reprojection()});
-  schema
-      .value("--accumulate-clip", accumulate(&A::clip_sigmas), "SIGMAS", Touch::history,
-             "reproject, two-sided: clips the history to within this many standard deviations of the current "
-             "neighbourhood; 0: does not clip")
-      .within(0, 1e6)
-      .idle_when({without_reprojection()});
-  schema
-      .flag("--accumulate-reset-saccades", accumulate(&A::reset_at_saccades), Touch::history,
-            "reproject, two-sided: rejects the history of a frame if a saccade happened since the frame before")
-      .idle_when({without_reprojection(), without_gaze_log()});
-  schema
-      .flag("--accumulate-reset-blinks", accumulate(&A::reset_at_blinks), Touch::history,
-            "reproject, two-sided: rejects the history of a frame if a blink happened since the frame before")
-      .idle_when({without_reprojection(), without_gaze_log()});
+      .value("--accumulate-future", &JobSettings::accumulate_future, "DURATION", Touch::history,
+             "The same after each frame, which only offline rendering can; 0s: a causal window")
+      .within(0, 10'000'000'000)
+      .idle_when({without_window()});
 }
 
 void add_checkpoint_options(JobSchema& schema) {
   schema
       .value("--checkpoint", &JobSettings::checkpoint, "FILE", Touch::history | Touch::output,
-             "Saves the accumulated history and the smoothed exposure after the last frame, to the bit; --resume makes "
+             "Saves the smoothed exposure after the last frame, to the bit; --resume makes "
              "the file where it is missing")
       .decides_nothing()
       .with(Trait::one_run)
@@ -74,15 +41,15 @@ void add_checkpoint_options(JobSchema& schema) {
       .within(0, 1e9)
       .need("`checkpoint`");
   schema
-      .value(
-          "--resume-from", &JobSettings::resume_from, "FILE", Touch::history,
-          "Begins with the history of a checkpoint of the same settings, as if the frames before were in the same run")
+      .value("--resume-from", &JobSettings::resume_from, "FILE", Touch::history,
+             "Begins with the smoothed exposure of a checkpoint of the same settings, as if the frames before were in "
+             "the same run")
       .decides_nothing()
       .with(Trait::one_run)
       .need(kNeedsHistory);
   schema
       .value("--preroll", &JobSettings::preroll, "N", Touch::history,
-             "Renders up to N frames before the first to build up history; they are not written")
+             "Renders up to N frames before the first to smooth the exposure from; they are not written")
       .decides_nothing()
       .with(Trait::one_run)
       .within(0, 1e6)
@@ -94,12 +61,13 @@ void add_checkpoint_options(JobSchema& schema) {
 void add_history_options(JobSchema& schema) {
   schema.group("Over time");
   schema
-      .value("--accumulate", accumulate(&AccumulateSettings::mode), choices<AccumulateMode>(), Touch::history,
-             "running: mean over frames while the camera is at rest; reproject: looks up earlier frames where the "
-             "surfaces of this one were, following camera, bodies and shapes, and rejects what does not match; "
-             "two-sided: takes later frames as well, which only offline rendering can")
+      .value(
+          "--accumulate", accumulate(&AccumulateSettings::mode), choices<AccumulateMode>(), Touch::history,
+          "window: each frame is reconstructed from its own samples and those of the frames around it, joined where "
+          "they saw the same places of surfaces that move along with camera, bodies and shapes; what has changed its "
+          "light meanwhile does not join")
       .with(Trait::always_stated);
-  add_reproject_options(schema);
+  add_window_options(schema);
   add_checkpoint_options(schema);
 }
 

@@ -42,20 +42,9 @@ JobIdleRule without_regions() {
   return with_other_sampling("regions");
 }
 
-JobIdleRule without_reproject() {
-  return {"without `accumulate` reproject",
-          [](const JobSettings& job) { return job.accumulate.mode != AccumulateMode::reproject; }};
-}
-
-JobIdleRule without_two_sided() {
-  return {"without `accumulate` two-sided",
-          [](const JobSettings& job) { return job.accumulate.mode != AccumulateMode::two_sided; }};
-}
-
-JobIdleRule without_reprojection() {
-  return {"without `accumulate` reproject or two-sided", [](const JobSettings& job) {
-            return job.accumulate.mode != AccumulateMode::reproject && job.accumulate.mode != AccumulateMode::two_sided;
-          }};
+JobIdleRule without_window() {
+  return {"without `accumulate` window",
+          [](const JobSettings& job) { return job.accumulate.mode != AccumulateMode::window; }};
 }
 
 JobIdleRule without_aov(const std::string& name) {

@@ -21,9 +21,7 @@ JobIdleRule without_gaze_log();
 JobIdleRule with_uniform();
 JobIdleRule with_regions();
 JobIdleRule without_regions();
-JobIdleRule without_reproject();
-JobIdleRule without_two_sided();
-JobIdleRule without_reprojection();  // neither reproject nor two-sided
+JobIdleRule without_window();
 // No AOV whose name begins so is asked for.
 JobIdleRule without_aov(const std::string& name);
 JobIdleRule without_automatic_exposure();

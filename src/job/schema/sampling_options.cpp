@@ -181,7 +181,7 @@ void add_block_options(JobSchema& schema) {
       .idle_when({without_density(), with_regions(), with_uniform()});
   schema
       .value("--max-block", foveation(&F::max_block_px), "1|2|4|8|16", Touch::sampling,
-             "Densities: the largest side of a block, in pixels. With --sampling adaptive and --accumulate two-sided "
+             "Densities: the largest side of a block, in pixels. With --sampling adaptive and --accumulate window "
              "the default is 1, since frames are added up where their blocks are the same; 16 then counts as not given")
       .within(1, 16)
       .idle_when({without_density(), with_regions(), with_uniform()});
@@ -220,7 +220,7 @@ void add_target_options(JobSchema& schema) {
   schema
       .value("--target-jod", at(&JobSettings::foveation, &F::target, &QualityTarget::jod), "JOD", Touch::sampling,
              "As many samples as it takes until the sequence scores so much by FovVideoVDP, as 'gazetrace compare' "
-             "measures it. Any --sampling but regions, any --filter; with --accumulate two-sided at rest many times "
+             "measures it. Any --sampling but regions, any --filter; with --accumulate window at rest many times "
              "fewer samples")
       .within(0, 10)
       .need("gaze and another `sampling` than regions");

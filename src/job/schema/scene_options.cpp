@@ -41,7 +41,8 @@ void add_limit_options(JobSchema& schema) {
   schema
       .value("--max-memory", &JobSettings::max_memory, "BYTES", Touch::scene,
              "Refuses a scene that will take more memory, before it is loaded: 8G, 500M; 0: three quarters of what the "
-             "machine has. Nodes, and pictures beyond 200 times their file, may take a sixteenth of it. 'gazetrace "
+             "machine has. So are frames whose windows take more (--accumulate). Nodes, and pictures beyond 200 times "
+             "their file, may take a sixteenth of it. 'gazetrace "
              "scene FILE --estimate' says how much a scene will take")
       .decides_nothing();
 }

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/hash.hpp"
-#include "pipeline/frame_window.hpp"
+#include "pipeline/joined_frames.hpp"
 #include "pipeline/quality/clip_score.hpp"
 #include "pipeline/quality/discarded.hpp"
 #include "pipeline/trace_counts.hpp"
@@ -123,7 +123,7 @@ void WindowClip::refine(double spp) {
 double WindowClip::measured_q(const JudgedFrames& judged, const WindowPictures& pictures) const {
   const auto reference = [&](std::size_t index) -> const ImageGray& { return reference_shown_[reference_of(index)]; };
   const auto frame = [&](std::size_t index) { return around_.shown(pictures[index % pictures.size()], index); };
-  const bool fills = settings_.accumulate.mode == AccumulateMode::two_sided && settings_.accumulate.window > 0;
+  const bool fills = settings_.accumulate.mode == AccumulateMode::window;
   return clip_q(judged, reference, frame, {settings_.frames_per_second, fills, windows_.weights, settings_.threads});
 }
 
@@ -152,8 +152,8 @@ std::vector<ImageRgb> WindowClip::look_at(std::size_t window, const FrameSetting
 
 void WindowClip::render(const FramePlan& plan, const FrameSettings& settings, std::vector<ImageRgb>& pictures) {
   const FrameRenderer renderer(tracer_, settings);
-  std::optional<FrameWindow> joined;
-  if (settings.accumulate.mode == AccumulateMode::two_sided) {
+  std::optional<JoinedFrames> joined;
+  if (settings.accumulate.mode == AccumulateMode::window) {
     std::set<std::int32_t> numbers;
     for (const FrameRequest& request : plan.frames) {
       numbers.insert(request.frame);

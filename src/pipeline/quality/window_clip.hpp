@@ -25,7 +25,7 @@ namespace gazetrace {
 
 class WindowClip {
  public:
-  // Keeps references to all, which must outlive it. `settings` accumulate nothing, or AccumulateMode::two_sided.
+  // Keeps references to all, which must outlive it.
   WindowClip(PathTracer& tracer, const JudgedFrames& judged, const FrameSettings& settings, const ColorPipeline& color);
   WindowClip(const WindowClip&) = delete;
   WindowClip& operator=(const WindowClip&) = delete;

@@ -28,8 +28,9 @@ struct InstancePoses {
   std::vector<DeformedVertices> shape;  // at the other time, one per geometry of the mesh; empty: it was the same
 };
 
+// `with_shapes`: InstancePoses::shape is wanted.
 InstancePoses poses_of(const Scene& scene, const RenderScene& render_scene, const ShadingInstance& instance,
-                       std::int64_t t_ns, int threads) {
+                       std::int64_t t_ns, bool with_shapes, int threads) {
   InstancePoses poses;
   if (instance.scene_instance == kNoId) {
     return poses;
@@ -48,8 +49,9 @@ InstancePoses poses_of(const Scene& scene, const RenderScene& render_scene, cons
     const MeshPose pose = scene.deformations[static_cast<std::size_t>(source.deformation)].pose_at(t_ns);
     if (!render_scene.is_in_pose(instance.scene_instance, pose)) {
       poses.moved = true;
-      for (const Geometry& geometry : scene.meshes[static_cast<std::size_t>(source.mesh)].geometries) {
-        poses.shape.push_back(deform(geometry, pose, TextureRef{}, threads));
+      const std::vector<Geometry>& geometries = scene.meshes[static_cast<std::size_t>(source.mesh)].geometries;
+      for (std::size_t i = 0; with_shapes && i < geometries.size(); ++i) {
+        poses.shape.push_back(deform(geometries[i], pose, TextureRef{}, threads));
       }
     }
   }
@@ -68,117 +70,40 @@ bool one_sky(const Camera& a, const Camera& b) {
          length(forward(a) - forward(b)) < 1e-9;
 }
 
-class MotionTracer {
+// Where what pixels see was at one other time, and where that is in another view.
+class HitFollower {
  public:
-  MotionTracer(const Scene& scene, const RenderScene& render_scene, const Camera& camera, int width_px, int height_px,
-               const OtherView& other, int threads)
-      : scene_(scene),
-        render_scene_(render_scene),
-        rays_(camera, height_px),
-        view_(camera, width_px, height_px),
-        other_view_(other.camera, width_px, height_px),
-        same_view_(camera.pose == other.camera.pose && camera.projection == other.camera.projection),
-        misses_stay_(same_view_ || one_sky(camera, other.camera)),
-        width_px_(width_px),
-        height_px_(height_px) {
+  HitFollower(const Scene& scene, const RenderScene& render_scene, const OtherView& other, int width_px, int height_px,
+              bool with_shapes, int threads)
+      : scene_(scene), render_scene_(render_scene), view_(other.camera, width_px, height_px) {
     for (const ShadingInstance& instance : render_scene.instances) {
-      poses_.push_back(poses_of(scene, render_scene, instance, other.t_video_ns, threads));
+      poses_.push_back(poses_of(scene, render_scene, instance, other.t_video_ns, with_shapes, threads));
     }
   }
 
-  struct Workspace {
-    RayBatch rays;
-    HitBatch hits;
-    std::array<std::size_t, kBatchSize> pixel;
-  };
-
-  void trace_tile(int x0, int y0, Workspace& work, SurfaceMotion& out) const {
-    std::size_t count = 0;
-    for (std::uint32_t i = 0; i < kBatchSize; ++i) {
-      const auto [dx, dy] = place_on_curve(i);
-      const int x = x0 + dx;
-      const int y = y0 + dy;
-      if (x >= width_px_ || y >= height_px_) {
-        continue;
-      }
-      const CameraRays::Ray ray = rays_.ray(static_cast<float>(x) + 0.5F - 0.5F * static_cast<float>(width_px_),
-                                            static_cast<float>(y) + 0.5F - 0.5F * static_cast<float>(height_px_));
-      // The same in every frame, so that a blended surface does not flicker.
-      const auto alpha_key = static_cast<std::uint32_t>(
-          hash64(kPlaceKey ^ (static_cast<std::uint64_t>(y) << 32U | static_cast<std::uint64_t>(x))));
-      put_camera_ray(ray, alpha_key, count, work.rays);
-      work.pixel[count] = out.depth_m.index(x, y);
-      ++count;
-    }
-    render_scene_.rays->intersect(work.rays, static_cast<int>(count), RayShape::coherent_packet, work.hits);
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::uint32_t geometry = work.hits.geometry[k];
-      if (geometry == kNoId || geometry == kRejected) {
-        store_miss(work, k, out);
-      } else {
-        store_hit(work, k, out);
-      }
-    }
+  [[nodiscard]] const PixelProjection& view() const { return view_; }
+  // Whether what was hit is where it is in the pose of the tracer.
+  [[nodiscard]] bool stays(const PixelHit& hit) const { return hit.instance == kNoId || !poses_[hit.instance].moved; }
+  [[nodiscard]] std::uint32_t object(const PixelHit& hit) const {
+    const std::uint32_t of_instance =
+        hit.instance == kNoId ? kNoId : render_scene_.instances[hit.instance].scene_instance;
+    return 1 + (of_instance == kNoId ? render_scene_.geometries[hit.geometry].scene_instance : of_instance);
   }
 
- private:
-  [[nodiscard]] Vec2d center_of(std::size_t pixel) const {
-    const auto width = static_cast<std::size_t>(width_px_);
-    return {static_cast<double>(pixel % width) + 0.5, static_cast<double>(pixel / width) + 0.5};
-  }
-
-  void store_miss(const Workspace& work, std::size_t k, SurfaceMotion& out) const {
-    const std::size_t pixel = work.pixel[k];
-    out.other_px.pixels[pixel] =
-        misses_stay_ ? center_of(pixel) : other_view_.direction({work.rays.dx[k], work.rays.dy[k], work.rays.dz[k]});
-  }
-
-  void store_hit(const Workspace& work, std::size_t k, SurfaceMotion& out) const {
-    const std::size_t pixel = work.pixel[k];
-    const HitBatch& hits = work.hits;
-    std::uint32_t record = hits.geometry[k];
-    const InstancePoses* poses = nullptr;
-    std::uint32_t scene_instance = kNoId;
-    if (hits.instance[k] != kNoId) {
-      const std::size_t index = hits.instance[k] - render_scene_.first_instance_id;
-      record += render_scene_.instances[index].first_geometry;
-      scene_instance = render_scene_.instances[index].scene_instance;
-      poses = &poses_[index];
-    }
-    const GeometryRecord& geometry = render_scene_.geometries[record];
-    scene_instance = scene_instance == kNoId ? geometry.scene_instance : scene_instance;
-    const Corners corners = corners_of(geometry, hits.primitive[k], poses);
-    const double u = static_cast<double>(hits.u[k]);
-    const double v = static_cast<double>(hits.v[k]);
-    const auto at = [&](const std::array<Vec3d, 3>& c) { return c[0] * (1 - u - v) + c[1] * u + c[2] * v; };
-    const auto facing = [](const std::array<Vec3d, 3>& c, const Vec3d& toward) {
-      const Vec3d face = normalize(cross(c[1] - c[0], c[2] - c[0]));
-      return to_float(dot(face, toward) < 0 ? -face : face);
-    };
-    const Vec3d now = at(corners.now);
-    const Vec3d then = at(corners.then);
-    const PixelProjection::Place place = other_view_.point(then);
-    const bool still = same_view_ && (poses == nullptr || !poses->moved);
-    out.object.pixels[pixel] = 1 + scene_instance;
-    out.depth_m.pixels[pixel] = static_cast<float>(view_.point(now).depth_m);
-    out.position_m.pixels[pixel] = to_float(now);
-    out.normal.pixels[pixel] = facing(corners.now, view_.toward(now));
-    out.other_px.pixels[pixel] = still ? center_of(pixel) : place.px;
-    out.other_depth_m.pixels[pixel] = static_cast<float>(place.depth_m);
-    out.other_normal.pixels[pixel] = facing(corners.then, other_view_.toward(then));
-  }
-
-  // The corners in world space, in double.
-  [[nodiscard]] Corners corners_of(const GeometryRecord& record, std::uint32_t primitive,
-                                   const InstancePoses* poses) const {
-    const ShadingTriangle& triangle = render_scene_.triangles[record.first_triangle + primitive];
+  // The corners of the triangle in world space, in double: in the pose of the tracer, and at the other time.
+  [[nodiscard]] Corners corners_of(const PixelHit& hit) const {
+    const GeometryRecord& record = render_scene_.geometries[hit.geometry];
+    const InstancePoses* poses = hit.instance == kNoId ? nullptr : &poses_[hit.instance];
+    const ShadingTriangle& triangle = render_scene_.triangles[record.first_triangle + hit.primitive];
     Corners corners;
     for (std::size_t c = 0; c < 3; ++c) {
       corners.now[c] = to_double(triangle.position[c]);
       corners.then[c] = corners.now[c];
       if (poses != nullptr) {
         if (!poses->shape.empty()) {
-          const auto vertex = geometry_of(record, *poses).triangles[primitive][c];
+          const Instance& source = scene_.instances[render_scene_.instances[hit.instance].scene_instance];
+          const Mesh& mesh = scene_.meshes[static_cast<std::size_t>(source.mesh)];
+          const auto vertex = mesh.geometries[record.scene_geometry].triangles[hit.primitive][c];
           corners.then[c] = to_double(poses->shape[record.scene_geometry].positions[vertex]);
         }
         corners.now[c] = transform_point(poses->now, corners.now[c]);
@@ -188,22 +113,148 @@ class MotionTracer {
     return corners;
   }
 
-  [[nodiscard]] const Geometry& geometry_of(const GeometryRecord& record, const InstancePoses& poses) const {
-    const auto index = static_cast<std::size_t>(&poses - poses_.data());
-    const Instance& source = scene_.instances[render_scene_.instances[index].scene_instance];
-    return scene_.meshes[static_cast<std::size_t>(source.mesh)].geometries[record.scene_geometry];
-  }
-
+ private:
   const Scene& scene_;
   const RenderScene& render_scene_;
-  CameraRays rays_;
-  PixelProjection view_, other_view_;
-  bool same_view_, misses_stay_;
-  int width_px_, height_px_;
+  PixelProjection view_;
   std::vector<InstancePoses> poses_;
 };
 
+Vec3d point_on(const std::array<Vec3d, 3>& corners, const PixelHit& hit) {
+  const double u = static_cast<double>(hit.u);
+  const double v = static_cast<double>(hit.v);
+  return corners[0] * (1 - u - v) + corners[1] * u + corners[2] * v;
+}
+
+// In the pose of the tracer.
+Vec3d point_of(const RenderScene& scene, const PixelHit& hit) {
+  const ShadingTriangle& triangle = scene.triangles[scene.geometries[hit.geometry].first_triangle + hit.primitive];
+  const Vec3d point = point_on(
+      {to_double(triangle.position[0]), to_double(triangle.position[1]), to_double(triangle.position[2])}, hit);
+  if (hit.instance == kNoId) {
+    return point;
+  }
+  const ShadingInstance& instance = scene.instances[hit.instance];
+  return transform_point({to_double(instance.axes[0]), to_double(instance.axes[1]), to_double(instance.axes[2]),
+                          to_double(instance.translation)},
+                         point);
+}
+
+Vec2d center_of(std::size_t pixel, int width_px) {
+  const auto width = static_cast<std::size_t>(width_px);
+  return {static_cast<double>(pixel % width) + 0.5, static_cast<double>(pixel / width) + 0.5};
+}
+
+CameraRays::Ray ray_of(const CameraRays& rays, std::size_t pixel, int width_px, int height_px) {
+  const auto width = static_cast<std::size_t>(width_px);
+  return rays.ray(static_cast<float>(pixel % width) + 0.5F - 0.5F * static_cast<float>(width_px),
+                  static_cast<float>(pixel / width) + 0.5F - 0.5F * static_cast<float>(height_px));
+}
+
+bool same_view(const Camera& a, const Camera& b) {
+  return a.pose == b.pose && a.projection == b.projection;
+}
+
+// Where a miss is in another view.
+Vec2d place_of_miss(const HitFollower& other, const CameraRays& rays, std::size_t pixel, const Camera& from,
+                    const Camera& to, int width_px, int height_px) {
+  if (same_view(from, to) || one_sky(from, to)) {
+    return center_of(pixel, width_px);
+  }
+  return other.view().direction(to_double(ray_of(rays, pixel, width_px, height_px).direction));
+}
+
+struct Workspace {
+  RayBatch rays;
+  HitBatch hits;
+  std::array<std::size_t, kBatchSize> pixel;
+};
+
+void trace_tile(const RenderScene& scene, const CameraRays& rays, int x0, int y0, Workspace& work, PixelHits& out) {
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < kBatchSize; ++i) {
+    const auto [dx, dy] = place_on_curve(i);
+    const int x = x0 + dx;
+    const int y = y0 + dy;
+    if (x >= out.hits.width_px || y >= out.hits.height_px) {
+      continue;
+    }
+    // The same in every frame, so that a blended surface does not flicker.
+    const auto alpha_key = static_cast<std::uint32_t>(
+        hash64(kPlaceKey ^ (static_cast<std::uint64_t>(y) << 32U | static_cast<std::uint64_t>(x))));
+    work.pixel[count] = out.hits.index(x, y);
+    put_camera_ray(ray_of(rays, work.pixel[count], out.hits.width_px, out.hits.height_px), alpha_key, count, work.rays);
+    ++count;
+  }
+  scene.rays->intersect(work.rays, static_cast<int>(count), RayShape::coherent_packet, work.hits);
+  for (std::size_t k = 0; k < count; ++k) {
+    const HitBatch& hits = work.hits;
+    if (hits.geometry[k] == kNoId || hits.geometry[k] == kRejected) {
+      continue;
+    }
+    PixelHit hit{kNoId, hits.geometry[k], hits.primitive[k], hits.u[k], hits.v[k]};
+    if (hits.instance[k] != kNoId) {
+      hit.instance = hits.instance[k] - scene.first_instance_id;
+      hit.geometry += scene.instances[hit.instance].first_geometry;
+    }
+    out.hits.pixels[work.pixel[k]] = hit;
+    out.position_m.pixels[work.pixel[k]] = to_float(point_of(scene, hit) - out.view.camera.pose.position_m);
+  }
+}
+
+// visit(pixel) for all of them.
+template <class Visit>
+void for_each_pixel_of(int width_px, int height_px, int threads, const Visit& visit) {
+  parallel_for(static_cast<std::size_t>(height_px), threads, [&](std::size_t row) {
+    const auto width = static_cast<std::size_t>(width_px);
+    for (std::size_t pixel = row * width; pixel < (row + 1) * width; ++pixel) {
+      visit(pixel);
+    }
+  });
+}
+
 }  // namespace
+
+PixelHits trace_pixel_hits(const RenderScene& scene, const OtherView& view, int width_px, int height_px, int threads) {
+  PixelHits out{view, Image<PixelHit>(width_px, height_px, {kNoId, kNoId, 0, 0, 0}), ImageRgb(width_px, height_px)};
+  const CameraRays rays(view.camera, height_px);
+  const int rows = (height_px + kTilePx - 1) / kTilePx;
+  parallel_for(static_cast<std::size_t>(rows), threads, [&](std::size_t row) {
+    const FlushDenormals flush;
+    const auto work = std::make_unique<Workspace>();
+    for (int x0 = 0; x0 < width_px; x0 += kTilePx) {
+      trace_tile(scene, rays, x0, static_cast<int>(row) * kTilePx, *work, out);
+    }
+  });
+  return out;
+}
+
+HitPlaces places_of_hits(const Scene& scene, const RenderScene& render_scene, const PixelHits& seen,
+                         const OtherView& other, int threads) {
+  const int width_px = seen.hits.width_px;
+  const int height_px = seen.hits.height_px;
+  HitPlaces out{Image<std::uint32_t>(width_px, height_px), Image<Vec2d>(width_px, height_px),
+                ImageRgb(width_px, height_px), ImageRgb(width_px, height_px)};
+  const HitFollower follower(scene, render_scene, other, width_px, height_px, true, threads);
+  const HitFollower seen_at(scene, render_scene, seen.view, width_px, height_px, false, threads);
+  const CameraRays rays(seen.view.camera, height_px);
+  const bool same = same_view(seen.view.camera, other.camera);
+  for_each_pixel_of(width_px, height_px, threads, [&](std::size_t pixel) {
+    const PixelHit& hit = seen.hits.pixels[pixel];
+    if (hit.geometry == kNoId) {
+      out.px.pixels[pixel] = place_of_miss(follower, rays, pixel, seen.view.camera, other.camera, width_px, height_px);
+      return;
+    }
+    const Vec3d before = seen.view.camera.pose.position_m + to_double(seen.position_m.pixels[pixel]);
+    const bool still = seen.view.t_video_ns == other.t_video_ns || (follower.stays(hit) && seen_at.stays(hit));
+    const Vec3d then = still ? before : point_on(follower.corners_of(hit).then, hit);
+    out.object.pixels[pixel] = follower.object(hit);
+    out.px.pixels[pixel] = still && same ? center_of(pixel, width_px) : follower.view().point(then).px;
+    out.position_m.pixels[pixel] = to_float(then - other.camera.pose.position_m);
+    out.moved_m.pixels[pixel] = to_float(then - before);
+  });
+  return out;
+}
 
 SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render_scene, const Camera& camera,
                                    int width_px, int height_px, const OtherView& other, int threads) {
@@ -216,14 +267,32 @@ SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render
   out.other_px = Image<Vec2d>(width_px, height_px);
   out.other_depth_m = ImageGray(width_px, height_px, kFar);
   out.other_normal = ImageRgb(width_px, height_px);
-  const MotionTracer tracer(scene, render_scene, camera, width_px, height_px, other, threads);
-  const int rows = (height_px + kTilePx - 1) / kTilePx;
-  parallel_for(static_cast<std::size_t>(rows), threads, [&](std::size_t row) {
-    const FlushDenormals flush;
-    const auto work = std::make_unique<MotionTracer::Workspace>();
-    for (int x0 = 0; x0 < width_px; x0 += kTilePx) {
-      tracer.trace_tile(x0, static_cast<int>(row) * kTilePx, *work, out);
+  const PixelHits seen = trace_pixel_hits(render_scene, {camera, other.t_video_ns}, width_px, height_px, threads);
+  const HitFollower follower(scene, render_scene, other, width_px, height_px, true, threads);
+  const CameraRays rays(camera, height_px);
+  const PixelProjection view(camera, width_px, height_px);
+  const bool same = same_view(camera, other.camera);
+  for_each_pixel_of(width_px, height_px, threads, [&](std::size_t pixel) {
+    const PixelHit& hit = seen.hits.pixels[pixel];
+    if (hit.geometry == kNoId) {
+      out.other_px.pixels[pixel] = place_of_miss(follower, rays, pixel, camera, other.camera, width_px, height_px);
+      return;
     }
+    const Corners corners = follower.corners_of(hit);
+    const auto facing = [](const std::array<Vec3d, 3>& c, const Vec3d& toward) {
+      const Vec3d face = normalize(cross(c[1] - c[0], c[2] - c[0]));
+      return to_float(dot(face, toward) < 0 ? -face : face);
+    };
+    const Vec3d now = point_on(corners.now, hit);
+    const Vec3d then = point_on(corners.then, hit);
+    const PixelProjection::Place place = follower.view().point(then);
+    out.object.pixels[pixel] = follower.object(hit);
+    out.depth_m.pixels[pixel] = static_cast<float>(view.point(now).depth_m);
+    out.position_m.pixels[pixel] = to_float(now);
+    out.normal.pixels[pixel] = facing(corners.now, view.toward(now));
+    out.other_px.pixels[pixel] = same && follower.stays(hit) ? center_of(pixel, width_px) : place.px;
+    out.other_depth_m.pixels[pixel] = static_cast<float>(place.depth_m);
+    out.other_normal.pixels[pixel] = facing(corners.then, follower.view().toward(then));
   });
   return out;
 }

@@ -9,6 +9,12 @@
 
 namespace gazetrace {
 
+PixelHits trace_pixel_hits(const RenderScene& scene, const OtherView& view, int width_px, int height_px, int threads);
+
+// `render_scene` may be in any pose.
+HitPlaces places_of_hits(const Scene& scene, const RenderScene& render_scene, const PixelHits& seen,
+                         const OtherView& other, int threads);
+
 SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render_scene, const Camera& camera,
                                    int width_px, int height_px, const OtherView& other, int threads);
 

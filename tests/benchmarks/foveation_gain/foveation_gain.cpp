@@ -21,7 +21,7 @@
 //   in blocks       uniform with as many samples in all in blocks of 8 samples and more, as models have them in the
 //                   periphery: what a filter does to a single pixel with a sample is not what it does to a block
 // With --clip every picture is the last of so many frames at rest, each of --budget samples a pixel ("paper"
-// and "foveal rate" of their own), for models and rivals alike: accumulated by reprojection after the filter. Times are
+// and "foveal rate" of their own), for models and rivals alike: the mean of their pictures. Times are
 // those of a frame, by the mean. Models and rivals share no samples, nor do gazes. The reference is the mean of the
 // files, each of a seed of its own;
 // --ev, by default what brings its log-average luminance to 0.18, is the exposure. relMSE (the library's) is that of

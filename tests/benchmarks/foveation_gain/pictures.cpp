@@ -112,30 +112,17 @@ Picture Renderer::filtered(const Traced& traced, const std::string& filter) {
     guides_ = tracer_.at_rest().guides(camera_, view_.width_px, view_.height_px, *wanted);
     guides_ms_ = watch.elapsed_ms();
   }
-  const bool accumulates = traced.frames.size() > 1;
-  if (accumulates && !motion_) {
-    const Stopwatch watch;
-    motion_ = tracer_.at_rest().surface_motion(camera_, view_.width_px, view_.height_px, {camera_, 0});
-    motion_ms_ = watch.elapsed_ms();
-  }
   Picture picture;
   picture.guides_ms = wanted ? guides_ms_ : 0;
-  picture.temporal_ms = accumulates ? motion_ms_ : 0;
-  TemporalHistory history;
-  for (std::size_t i = 0; i < traced.frames.size(); ++i) {
-    const auto& [map, sparse] = traced.frames[i];
+  const double share = 1.0 / static_cast<double>(traced.frames.size());
+  picture.light = ImageRgb(view_.width_px, view_.height_px);
+  for (const auto& [map, sparse] : traced.frames) {
     const Stopwatch watch;
-    Frame frame = reconstruction.frame(sparse, map, wanted ? &*guides_ : nullptr);
+    const Frame frame = reconstruction.frame(sparse, map, wanted ? &*guides_ : nullptr);
     picture.reconstruct_ms += watch.elapsed_ms() / clip_frames_;
-    if (accumulates) {
-      FrameRequest request;
-      request.frame = kFirstFrame + static_cast<std::int32_t>(i);
-      request.camera = camera_;
-      const Stopwatch past;
-      frame = reproject(std::move(frame), map, *motion_, request, AccumulateSettings{}, history, 0);
-      picture.temporal_ms += past.elapsed_ms() / clip_frames_;
+    for (std::size_t i = 0; i < frame.radiance.pixels.size(); ++i) {
+      picture.light.pixels[i] += static_cast<float>(share) * frame.radiance.pixels[i];
     }
-    picture.light = std::move(frame.radiance);
   }
   return picture;
 }

@@ -43,7 +43,7 @@ struct Picture {
 // Traces and filters. The frame fills the paper's display.
 class Renderer {
  public:
-  // Pictures are the last ones of clips of so many frames; from 2 on they accumulate by reprojection.
+  // Pictures are the last ones of clips of so many frames; of more than one, their mean.
   Renderer(PathTracer& tracer, const Camera& camera, const benchmark::FrameSize& size, int clip_frames);
 
   // `surfaces`: for filters that need guides. Empty gaze: for maps that need none.
@@ -52,10 +52,7 @@ class Renderer {
   // First hits are the same for every map and frame: they are traced once, and their time is that of the first time,
   // in every frame; so is that of where surfaces were seen before.
   Picture filtered(const Traced& traced, const std::string& filter);
-  void forget_first_hits() {
-    guides_.reset();
-    motion_.reset();
-  }
+  void forget_first_hits() { guides_.reset(); }
   [[nodiscard]] const PlanarView& view() const { return view_; }
 
  private:
@@ -64,8 +61,7 @@ class Renderer {
   PlanarView view_;
   int clip_frames_ = 1;
   std::optional<Guides> guides_;
-  std::optional<SurfaceMotion> motion_;
-  double guides_ms_ = 0, motion_ms_ = 0;
+  double guides_ms_ = 0;
 };
 
 // A model of all_models() scaled to an average count. Cut-off frequencies are relative to the fovea: measured against

@@ -36,7 +36,7 @@ struct StudySettings {
   int seeds = 1;
   std::optional<double> ev;
   std::string csv;
-  int clip_frames = 1;  // from 2 on: clips, accumulated
+  int clip_frames = 1;  // from 2 on: means of clips
   int time_rounds = 0;  // not 0: measure times, and no errors
 };
 

@@ -97,7 +97,7 @@ TEST(Job, OrderOfPrecedence) {
   // paper sets bounces = 3, reference sets spp = 1024, both set filter and accumulate.
   const auto file = [](Job& job) { add_toml(job, "preset = \"paper\"\nspp = 7\nfilter = \"linear\"\n", "job.toml"); };
   const auto preset = [](Job& job) { on_command_line(job, "preset", "reference"); };
-  const auto option = [](Job& job) { on_command_line(job, "accumulate", "running"); };
+  const auto option = [](Job& job) { on_command_line(job, "accumulate", "window"); };
   for (const bool reversed : {false, true}) {
     Job job;
     if (reversed) {
@@ -110,7 +110,7 @@ TEST(Job, OrderOfPrecedence) {
       option(job);
     }
     const auto origin = [&](const char* name) { return job.sources.at(name).origin; };
-    EXPECT_EQ(option_text(job, "accumulate"), "running");  // the command line above its preset
+    EXPECT_EQ(option_text(job, "accumulate"), "window");  // the command line above its preset
     EXPECT_EQ(origin("accumulate"), Origin::given);
     EXPECT_EQ(option_text(job, "spp"), "1024");  // the preset of the command line above the file
     EXPECT_EQ(origin("spp"), Origin::preset);
@@ -298,10 +298,9 @@ TEST(JobSchema, WhatPresetsSetExists) {
 
 TEST(IdleOptions, AreThoseThatWereGivenAndDoNothing) {
   Job job;
-  set_option(job, "accumulate-blend", "0.2");
-  EXPECT_EQ(idle_option_warnings(job),
-            Warnings{"`accumulate-blend` does nothing without `accumulate` reproject or two-sided"});
-  set_option(job, "accumulate", "reproject");
+  set_option(job, "accumulate-past", "0.2s");
+  EXPECT_EQ(idle_option_warnings(job), Warnings{"`accumulate-past` does nothing without `accumulate` window"});
+  set_option(job, "accumulate", "window");
   EXPECT_TRUE(idle_option_warnings(job).empty());
   Job of_preset;
   set_option(of_preset, "preset", "paper");

@@ -58,28 +58,21 @@ TEST(ReconstructionNeeds, AFilterMustBeNamed) {
   }
 }
 
-TEST(ChooseFilter, TheNetworkWhereItsLibraryIsAndFramesAreAlone) {
+TEST(ChooseFilter, TheNetworkWhereItsLibraryIs) {
   EXPECT_EQ(choose_filter({.has_denoiser = true}).name, "oidn");
   EXPECT_EQ(choose_filter({.foveated = false, .has_denoiser = true}).name, "oidn");
-  EXPECT_EQ(choose_filter({.accumulates = true, .has_denoiser = true}).name, "guided");
   EXPECT_EQ(choose_filter({.single_pixel = true, .has_denoiser = true}).name, "guided");
-  EXPECT_EQ(choose_filter({.foveated = false, .means_frames = true, .has_denoiser = true}).name, "linear");
   EXPECT_THAT(choose_filter({}).reason, testing::HasSubstr("Open Image Denoise was not found"));
 }
 
 TEST(ChooseFilter, GuidedWhereAllSamplesAreThere) {
   EXPECT_EQ(choose_filter({}).name, "guided");
   EXPECT_EQ(choose_filter({.foveated = false}).name, "guided");
-  for (const FilterFacts& facts : std::vector<FilterFacts>{{.accumulates_sites = true},
-                                                           {.foveated = false, .means_frames = true},
-                                                           {.foveated = false, .single_pixel = true}}) {
-    const FilterChoice choice = choose_filter(facts);
-    EXPECT_EQ(choice.name, "linear");
-    EXPECT_NE(choice.reason, choose_filter({}).reason);
-    // What is chosen goes with what it was chosen for.
-    const FilterInfo filter = Reconstruction({choice.name}).filter();
-    EXPECT_FALSE(filter.needs.surfaces);
-  }
+  const FilterChoice choice = choose_filter({.foveated = false, .single_pixel = true});
+  EXPECT_EQ(choice.name, "linear");
+  EXPECT_NE(choice.reason, choose_filter({}).reason);
+  // What is chosen goes with what it was chosen for.
+  EXPECT_FALSE(Reconstruction({choice.name}).filter().needs.surfaces);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ label = "filter"
 filter = "none"
 [[setting]]
 label = "history"
-accumulate = "running"
+accumulate = "window"
 [[setting]]
 label = "trade-off"
 clamp-indirect = 4

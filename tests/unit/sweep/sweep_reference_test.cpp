@@ -52,7 +52,7 @@ TEST(ReferencePictures, AllWhereTheSceneMovesOrDeforms) {
 // What is gathered over time differs from frame to frame.
 TEST(ReferencePictures, AllWhereItAccumulates) {
   SweepReference reference = reference_of(3);
-  reference.pipeline.accumulate.mode = AccumulateMode::running;
+  reference.pipeline.accumulate.mode = AccumulateMode::window;
   EXPECT_EQ(reference_pictures(reference, Scene()), kAll);
 }
 
@@ -114,7 +114,7 @@ TEST(ReferenceEstimate, LoadsNothingWhereTheSceneDecidesNothing) {
   const auto made = planned({Scene(), Scene()});
   std::vector<SweepReference>& references = made->plan.references;
   references[0].plan.frames[1].camera.pose.position_m.x = 1;
-  references[1].pipeline.accumulate.mode = AccumulateMode::running;
+  references[1].pipeline.accumulate.mode = AccumulateMode::window;
   references[2].plan.frames.resize(1);
   EXPECT_EQ(samples_of(estimate_sweep(made->plan)), (std::vector<double>{3 * kOneFrame, 3 * kOneFrame, kOneFrame}));
   EXPECT_EQ(made->loads, (std::vector<int>{0, 0}));

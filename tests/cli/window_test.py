@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames that read those before and after them: parts, resumed runs and single frames have the bits of one run."""
+"""Frames that read those around them: parts, resumed runs and single frames have the bits of one run."""
 
 import json
 
@@ -12,14 +12,16 @@ gaze = "log.csv"
 size = "64x36"
 frame-rect = [0, 0, 64, 36]
 region-samples = [8, 8, 8]
-accumulate = "two-sided"
-accumulate-window = 2
+accumulate = "window"
+accumulate-past = "90ms"
+accumulate-future = "50ms"
+filter = "guided"
 quiet = true
 """
 JOB = ["--config", "job.toml"]
 
 
-class TwoSided(harness.CliTest):
+class Window(harness.CliTest):
     def setUp(self):
         super().setUp()
         self.write("glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1.0)))
@@ -30,10 +32,11 @@ class TwoSided(harness.CliTest):
         self.run_ok("render", *JOB, "-o", f"{folder}/f.####.png", *more)
         return {path.name: png_pixels(path) for path in (self.folder / folder).glob("f.*.png")}
 
-    def test_without_a_window_it_is_no_accumulation(self):
-        off = self.render("off", "--frames", "3,4", "--accumulate", "off")
-        self.assertEqual(self.render("alone", "--frames", "3,4", "--accumulate-window", "0"), off)
-        self.assertNotEqual(self.render("both", "--frames", "3,4"), off)
+    def test_without_a_window_every_frame_stands_for_itself(self):
+        off = self.render("off", "--frames", "3,4", "--accumulate", "off", "--filter", "none")
+        alone = self.render("alone", "--frames", "3,4", "--accumulate-past", "0s", "--accumulate-future", "40ms", "--filter", "none")
+        self.assertEqual(alone, off)  # a frame is 41.7 ms
+        self.assertNotEqual(self.render("both", "--frames", "3,4", "--filter", "none"), off)
 
     def test_a_frame_is_the_same_in_every_run(self):
         whole = self.render("whole", "--frames", "1-8")
@@ -53,27 +56,28 @@ class TwoSided(harness.CliTest):
         (self.folder / "whole" / "f.0004.png").unlink()
         self.assertEqual(self.render("whole", "--frames", "1-6", "--resume"), whole)
 
-    def test_groups_at_rest_are_the_same_in_every_run(self):
-        self.write("still.gltf", json.dumps(harness.box_gltf()))
-        rest = ["still.gltf", "--sampling", "uniform", "--spp", "2", "--filter", "guided", "--accumulate-hold", "2"]
-        whole = self.render("whole", *rest, "--frames", "1-6")
-        names = sorted(whole)
-        self.assertEqual([whole[a] == whole[b] for a, b in zip(names, names[1:])], [True, False, True, False, True])
-        for frames in ("1-3", "4", "2,5"):
-            for name, pixels in self.render(f"part-{frames}", *rest, "--frames", frames, "--chunk", "1/1").items():
-                self.assertEqual(pixels, whole[name], f"{frames}: {name}")
-        self.render("parts", *rest, "--frames", "1-3", "--chunk", "1/1")
-        self.render("parts", *rest, "--frames", "4-6", "--chunk", "1/1")
-        self.run_ok("merge", "parts")
-        self.assertEqual({p.name: png_pixels(p) for p in (self.folder / "parts").glob("f.*.png")}, whole)
-        (self.folder / "whole" / "f.0004.png").unlink()
-        self.assertEqual(self.render("whole", *rest, "--frames", "1-6", "--resume"), whole)
-        self.assertNotEqual(self.render("alone", *rest[:-2], "--frames", "1-6", "--accumulate-hold", "1"), whole)
+    def test_the_table_tells_a_frames_own_samples_from_those_of_others(self):
+        self.render("one", "--frames", "5", "--sampling", "uniform", "--spp", "2")
+        row, = self.table("one")
+        own = 2 * 64 * 36
+        self.assertEqual((int(row["samples"]), int(row["other_samples"])), (4 * own, 3 * own))  # two before, one after
+        self.render("off", "--frames", "5", "--sampling", "uniform", "--spp", "2", "--accumulate", "off")
+        row, = self.table("off")
+        self.assertEqual((int(row["samples"]), int(row["other_samples"])), (own, 0))
+
+    def table(self, folder):
+        import csv
+        with open(self.folder / folder / "f.timing.csv", newline="") as file:
+            return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+    def test_the_plan_says_what_the_frames_around_cost(self):
+        told = self.run_ok("plan", *JOB, "--frames", "5-8").stderr
+        self.assertIn("3 more frames are traced for the windows of these 4", told)
 
     def test_the_largest_number_of_a_frame(self):
         self.write("still.gltf", json.dumps(harness.box_gltf()))
         self.run_ok("render", "still.gltf", "--size", "16x9", "--sampling", "uniform", "--spp", "1", "-o", "f.####.png",
-                    "--accumulate", "two-sided", "--frames", "2147483647")
+                    "--accumulate", "window", "--frames", "2147483647")
         self.assertEqual([path.name for path in self.folder.glob("f.*.png")], ["f.2147483647.png"])
 
     def test_frames_beyond_the_camera_path_are_not_read(self):
@@ -89,12 +93,22 @@ class TwoSided(harness.CliTest):
         for name, pixels in rest.items():
             self.assertEqual(pixels, whole[name], name)
 
-    def test_the_record_says_that_it_is_not_causal(self):
+    def test_the_record_says_whether_it_is_causal(self):
         self.render("both", "--frames", "3")
         facts = json.loads((self.folder / "both" / "f.run.json").read_text())["facts"]
         self.assertEqual(facts["causal"], "false")
-        self.render("one", "--frames", "3", "--accumulate", "reproject")
-        self.assertNotIn("causal", json.loads((self.folder / "one" / "f.run.json").read_text())["facts"])
+        self.render("past", "--frames", "3", "--accumulate-future", "0s")
+        self.assertNotIn("causal", json.loads((self.folder / "past" / "f.run.json").read_text())["facts"])
+
+    def test_a_window_that_does_not_fit_is_refused(self):
+        self.assert_refused(["render", *JOB, "-o", "x/f.####.png", "--frames", "3", "--size", "1920x1080", "--max-memory", "64MiB"],
+                            ["--accumulate-past", "GiB"])
+
+    def test_former_ways_to_accumulate(self):
+        for old, words in ((["two-sided"], "--accumulate-past"), (["reproject"], "--accumulate-future"), (["running"], "window")):
+            told = self.run_ok("render", *JOB, "-o", f"{old[0]}/f.####.png", "--frames", "3", "--accumulate", *old).stderr
+            self.assertIn(words, told)
+        self.assert_refused(["render", *JOB, "-o", "x/f.####.png", "--frames", "3", "--accumulate-window", "4"], ["--accumulate-past"])
 
     def test_what_cannot_be_is_refused(self):
         for more, message in (

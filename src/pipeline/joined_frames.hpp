@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames in order that read those around them: traces ahead, and keeps what frames to come still read.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+
+#include "gazetrace/frame_renderer.hpp"
+
+namespace gazetrace {
+
+// Holds the samples of at most 1 + AccumulateSettings::past_frames + ::future_frames frames.
+class JoinedFrames {
+ public:
+  // Keeps references to both, which must outlive it. `counted` are the frames whose own samples and times are counted
+  // where they themselves are rendered.
+  JoinedFrames(const FrameRenderer& renderer, const FramePlan& plan, std::set<std::int32_t> counted);
+
+  // Frames must be asked for in ascending order. `history` is as for FrameRenderer::render(). The samples of frames
+  // beside `counted` ones are counted in RenderedFrame::others of the first frame that reads them.
+  RenderedFrame render(const FrameRequest& request, TemporalHistory& history);
+
+ private:
+  const FrameRenderer* renderer_;
+  std::map<std::int32_t, const FrameRequest*> requests_;  // of the plan, those around its frames included
+  std::set<std::int32_t> counted_;
+  std::map<std::int32_t, WindowFrame> in_memory_;
+  KnownLight light_;
+};
+
+}  // namespace gazetrace

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames around a frame have seen its surfaces, too. Their samples join its own before the filter, which then finds
+// less noise to take away.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gazetrace/camera.hpp"
+#include "gazetrace/foveation.hpp"
+#include "gazetrace/motion.hpp"
+#include "gazetrace/trace.hpp"
+
+namespace gazetrace {
+
+// What a frame has sampled, and from where.
+struct WindowSamples {
+  std::int32_t frame = 1;
+  const Camera* camera = nullptr;
+  const SamplingMap* map = nullptr;
+  const SparseFrame* sparse = nullptr;  // with surfaces
+};
+
+struct JoinedSamples {
+  SamplingMap map;  // that of the frame, with the samples of all; its tiles and regions count the frame's own
+  SparseFrame sparse;
+};
+
+// Joins the samples of a window's frames at the sites of one of them. A site goes as a whole to the one site that holds
+// the place that its middle pixel saw, as that is in the frame: so each of its samples counts once, and the noise of
+// neighbouring sites stays independent, which denoisers rely on. It joins where that site shows the same place, within
+// kSamePlace of its distance; where it is not seen more coarsely than at kMostCoarse times the frame's own footprint;
+// and where its look hardly depends on the view: glossy surfaces join only from within kSameGlossyView.
+//
+// Where light changes (`light_changes`), of each block of pixels only the frames around the frame itself join whose
+// light does not differ from its own by more than their noise (light_changes.hpp).
+//
+// What nothing joins keeps its bits. Where camera and scene are at rest and the sites the same, the sums are those of
+// all frames, with the same bits for each of them. What SparseFrame states of two halves of a site's samples is stated
+// of the frames with odd and with even numbers, where there are both: each has a scrambling of its own.
+class WindowJoin {
+ public:
+  // `places`: what the frame's pixels see, in its own view. Keeps references to all.
+  WindowJoin(const WindowSamples& own, const HitPlaces& places, bool light_changes, int threads);
+  WindowJoin(const WindowJoin&) = delete;
+  WindowJoin& operator=(const WindowJoin&) = delete;
+
+  // Another frame of the same size, in ascending order of frames. `places`: what its pixels see, in the frame's view.
+  void add(const WindowSamples& other, const HitPlaces& places);
+
+  // Without stats.
+  [[nodiscard]] JoinedSamples joined() const;
+
+  static constexpr float kSamePlace = 0.05F;
+  static constexpr float kMostCoarse = 1.5F;
+  static constexpr float kSameGlossyView = 0.99999F;  // cosine of about a quarter of a degree
+
+ private:
+  struct Added {
+    WindowSamples samples;
+    std::vector<std::uint32_t> target;       // the frame's site that each site joins, or kNoSite
+    std::vector<Vec3f> moved_m;              // from one camera to the other, and by motion in the scene
+    std::vector<std::uint32_t> first, last;  // of each tile's targets
+  };
+  struct Part;
+  class SiteAdder;
+
+  [[nodiscard]] bool joins(const WindowSamples& other, const HitPlaces& places, std::size_t site, std::size_t seen,
+                           std::size_t pixel) const;
+  [[nodiscard]] Part part_of(std::size_t part) const;
+  void index_tiles(Added& added) const;
+
+  WindowSamples own_;
+  const HitPlaces& places_;
+  bool light_changes_;
+  int threads_;
+  Image<std::uint32_t> site_of_pixel_;
+  std::vector<Added> added_;  // with the frame itself
+};
+
+}  // namespace gazetrace
