@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Guides: what the camera sees first, at full resolution, found with a ray or a few per pixel instead of whole paths.
-// They steer filters and reprojection.
+// They steer filters.
 #pragma once
 
 #include <cstdint>

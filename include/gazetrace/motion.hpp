@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Motion vectors: where the surface point that a pixel shows is in another view, earlier or later, by the motion of the
-// camera, of rigid bodies and of shapes. Reprojection uses them.
+// camera, of rigid bodies and of shapes. Joining frames uses them.
 #pragma once
 
 #include <cstdint>
