@@ -21,7 +21,9 @@ struct OtherView {
 struct PixelHit {
   std::uint32_t instance, geometry, primitive;
   float u, v;
+  bool mirrors;  // its look changes sharply with the view: transmission, or a roughness below kMirrorRoughness
 };
+inline constexpr float kMirrorRoughness = 0.2F;  // of the material as a whole, whatever its texture says
 
 // What the pixels of a frame see, one entry each, as SurfaceMotion finds it. They belong to the tracer that found them.
 struct PixelHits {
@@ -37,6 +39,7 @@ struct HitPlaces {
                                 // there; the pixel's own centre where nothing has moved; NaN where it is not in front
   ImageRgb position_m;          // from the other view's camera, in world axes; zero for a miss
   ImageRgb moved_m;             // from the one time to the other, in the world
+  Image<std::uint8_t> mirrors;  // as PixelHit
 };
 
 // One entry per pixel, found by the ray through its centre. Lens and shutter are left out: both cameras are pinholes in

@@ -148,8 +148,7 @@ Job uniform_job(const Job& test, const JobSchema& schema) {
 }
 
 bool uses_gaze_otherwise(const Job& test) {
-  const AccumulateSettings& accumulate = test.settings.accumulate;
-  return test.settings.camera_from_gaze || accumulate.reset_at_saccades || accumulate.reset_at_blinks;
+  return test.settings.camera_from_gaze;
 }
 
 bool uniform_sees(const Option& option, const Job& test) {

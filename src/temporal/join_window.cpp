@@ -12,6 +12,7 @@
 #include "core/parallel.hpp"
 #include "foveation/site_images.hpp"
 #include "temporal/light_changes.hpp"
+#include "temporal/same_camera.hpp"
 #include "trace/rays/camera_rays.hpp"
 #include "trace/samples/surface_sums.hpp"
 
@@ -36,6 +37,14 @@ bool is_glossy(const SparseFrame& sparse, std::size_t site) {
   return std::any_of(sparse.surfaces.begin() + sparse.first_surface[site],
                      sparse.surfaces.begin() + sparse.first_surface[site + 1],
                      [](const SurfaceSums& surface) { return surface.kind == SurfaceKind::glossy; });
+}
+
+std::vector<std::uint8_t> glossy_sites(const WindowSamples& samples) {
+  std::vector<std::uint8_t> glossy(samples.map->sites.size());
+  for (std::size_t site = 0; site < glossy.size(); ++site) {
+    glossy[site] = is_glossy(*samples.sparse, site) ? 1 : 0;
+  }
+  return glossy;
 }
 
 // A site of one of the frames that joins a site.
@@ -215,8 +224,8 @@ WindowJoin::WindowJoin(const WindowSamples& own, const HitPlaces& places, bool l
       light_changes_(light_changes),
       threads_(threads),
       site_of_pixel_(sites_of_pixels(*own.map, threads)) {
-  Added itself{
-      own, std::vector<std::uint32_t>(own.map->sites.size()), std::vector<Vec3f>(own.map->sites.size()), {}, {}};
+  const std::size_t sites = own.map->sites.size();
+  Added itself{own, std::vector<std::uint32_t>(sites), std::vector<Vec3f>(sites), glossy_sites(own), {}, {}};
   for (std::uint32_t site = 0; site < itself.target.size(); ++site) {
     itself.target[site] = site;
   }
@@ -251,7 +260,10 @@ bool WindowJoin::joins(const WindowSamples& other, const HitPlaces& places, std:
       kMostCoarse * block(*own_.map, seen) * (perspective ? distance : 1)) {
     return false;
   }
-  return !is_glossy(*other.sparse, site) || dot(place, seen_from_other) >= kSameGlossyView * distance * far;
+  const bool mirrors = places.mirrors.pixels[pixel] != 0 || places_.mirrors.pixels[at] != 0;
+  const float same_view = mirrors ? kSameMirroredView : kSameGlossyView;
+  return !perspective || !(mirrors || is_glossy(*other.sparse, site)) ||
+         dot(place, seen_from_other) >= same_view * distance * far;
 }
 
 void WindowJoin::index_tiles(Added& added) const {
@@ -271,7 +283,9 @@ void WindowJoin::index_tiles(Added& added) const {
 
 void WindowJoin::add(const WindowSamples& other, const HitPlaces& places) {
   const std::size_t sites = other.map->sites.size();
-  Added added{other, std::vector<std::uint32_t>(sites, kNoSite), std::vector<Vec3f>(sites), {}, {}};
+  Added added{other, std::vector<std::uint32_t>(sites, kNoSite), std::vector<Vec3f>(sites), glossy_sites(other), {},
+              {}};
+  views_differ_ = views_differ_ || !same_camera(*other.camera, *own_.camera);
   const Vec3f camera_m = to_float(other.camera->pose.position_m - own_.camera->pose.position_m);
   parallel_for(other.map->tiles.size(), threads_, [&](std::size_t t) {
     const MapTile& tile = other.map->tiles[t];
@@ -331,33 +345,52 @@ WindowJoin::Part WindowJoin::part_of(std::size_t part) const {
   return out;
 }
 
+// Of surfaces of either kind, diffuse and glossy, the frames in whose light each block is; empty: all of them.
+template <class BlockOf>
+std::array<std::vector<FrameRange>, 2> WindowJoin::find_same_light(std::size_t own, const BlockOf& block_of) const {
+  const std::array<bool, 2> may_differ{light_changes_, light_changes_ || views_differ_};
+  std::array<std::vector<FrameRange>, 2> ranges;
+  if (!may_differ[1]) {
+    return ranges;
+  }
+  std::array<LightChanges, 2> light{LightChanges(own_.map->width_px, own_.map->height_px, added_.size()),
+                                    LightChanges(own_.map->width_px, own_.map->height_px, added_.size())};
+  const std::size_t parts = std::min(own_.map->tiles.size(), kMostParts);
+  for (std::size_t p = 0; p < parts; ++p) {
+    const Part part = part_of(p);
+    for (std::size_t site = part.begin; site < part.end(); ++site) {
+      for (const Joining& one : part.of(site)) {
+        const Added& added = added_[one.frame];
+        const std::size_t kind = added.glossy[one.site] ? 1 : 0;
+        const SparseFrame& sparse = *added.samples.sparse;
+        if (may_differ[kind]) {
+          light[kind]
+              .at(block_of(site), one.frame)
+              .add(luminance(to_double(sparse.sum[one.site])),
+                   static_cast<double>(sparse.sum_square_luminance[one.site]), sparse.count[one.site]);
+        }
+      }
+    }
+  }
+  for (std::size_t kind = 0; kind < 2; ++kind) {
+    if (may_differ[kind]) {
+      ranges[kind] = light[kind].same_light(own, threads_);
+    }
+  }
+  return ranges;
+}
+
 JoinedSamples WindowJoin::joined() const {
   const SamplingMap& own_map = *own_.map;
   const std::size_t parts = std::min(own_map.tiles.size(), kMostParts);
   const auto own = static_cast<std::size_t>(
       std::find_if(added_.begin(), added_.end(), [&](const Added& one) { return one.samples.frame == own_.frame; }) -
       added_.begin());
-  LightChanges light(own_map.width_px, own_map.height_px, light_changes_ ? added_.size() : 0);
   const auto block_of = [&](std::size_t site) {
     const PixelIndex middle = middle_of(own_map, own_map.sites[site]);
-    return light.block_of(middle.x, middle.y);
+    return LightChanges::block_of(middle.x, middle.y, own_map.width_px);
   };
-  std::vector<FrameRange> same_light;
-  if (light_changes_) {
-    for (std::size_t p = 0; p < parts; ++p) {
-      const Part part = part_of(p);
-      for (std::size_t site = part.begin; site < part.end(); ++site) {
-        for (const Joining& one : part.of(site)) {
-          LightSums& sums = light.at(block_of(site), one.frame);
-          const SparseFrame& sparse = *added_[one.frame].samples.sparse;
-          sums.luminance += luminance(to_double(sparse.sum[one.site]));
-          sums.square += static_cast<double>(sparse.sum_square_luminance[one.site]);
-          sums.samples += sparse.count[one.site];
-        }
-      }
-    }
-    same_light = light.same_light(own, threads_);
-  }
+  const std::array<std::vector<FrameRange>, 2> same_light = find_same_light(own, block_of);
   JoinedSamples all;
   all.map = own_map;
   SparseFrame& out = all.sparse;
@@ -381,8 +414,8 @@ JoinedSamples WindowJoin::joined() const {
     for (std::size_t site = part.begin; site < part.end(); ++site) {
       kept.clear();
       for (const Joining& one : part.of(site)) {
-        const FrameRange range = light_changes_ ? same_light[block_of(site)] : FrameRange{0, added_.size()};
-        if (one.frame >= range.first && one.frame <= range.last) {
+        const std::vector<FrameRange>& ranges = same_light[added_[one.frame].glossy[one.site] ? 1 : 0];
+        if (ranges.empty() || ranges[block_of(site)].holds(one.frame) || one.frame == own) {
           kept.push_back(one);
         }
       }

@@ -3,6 +3,7 @@
 // less noise to take away.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/motion.hpp"
 #include "gazetrace/trace.hpp"
+#include "temporal/light_changes.hpp"
 
 namespace gazetrace {
 
@@ -30,10 +32,11 @@ struct JoinedSamples {
 // the place that its middle pixel saw, as that is in the frame: so each of its samples counts once, and the noise of
 // neighbouring sites stays independent, which denoisers rely on. It joins where that site shows the same place, within
 // kSamePlace of its distance; where it is not seen more coarsely than at kMostCoarse times the frame's own footprint;
-// and where its look hardly depends on the view: glossy surfaces join only from within kSameGlossyView.
+// and, if the surface is glossy, where it is seen from within kSameGlossyView, or if it mirrors, kSameMirroredView.
 //
-// Where light changes (`light_changes`), of each block of pixels only the frames around the frame itself join whose
-// light does not differ from its own by more than their noise (light_changes.hpp).
+// Where light may differ, of each block of pixels only the frames around the frame itself join whose light does not
+// differ from its own by more than their noise (light_changes.hpp): of glossy surfaces that are seen from elsewhere,
+// and of all surfaces with `light_changes`.
 //
 // What nothing joins keeps its bits. Where camera and scene are at rest and the sites the same, the sums are those of
 // all frames, with the same bits for each of them. What SparseFrame states of two halves of a site's samples is stated
@@ -53,13 +56,15 @@ class WindowJoin {
 
   static constexpr float kSamePlace = 0.05F;
   static constexpr float kMostCoarse = 1.5F;
-  static constexpr float kSameGlossyView = 0.99999F;  // cosine of about a quarter of a degree
+  static constexpr float kSameGlossyView = 0.9962F;     // cosine of 5 degrees
+  static constexpr float kSameMirroredView = 0.99999F;  // cosine of a quarter of a degree
 
  private:
   struct Added {
     WindowSamples samples;
     std::vector<std::uint32_t> target;       // the frame's site that each site joins, or kNoSite
     std::vector<Vec3f> moved_m;              // from one camera to the other, and by motion in the scene
+    std::vector<std::uint8_t> glossy;        // whether a site saw a glossy surface
     std::vector<std::uint32_t> first, last;  // of each tile's targets
   };
   struct Part;
@@ -69,10 +74,12 @@ class WindowJoin {
                            std::size_t pixel) const;
   [[nodiscard]] Part part_of(std::size_t part) const;
   void index_tiles(Added& added) const;
+  template <class BlockOf>
+  [[nodiscard]] std::array<std::vector<FrameRange>, 2> find_same_light(std::size_t own, const BlockOf& block_of) const;
 
   WindowSamples own_;
   const HitPlaces& places_;
-  bool light_changes_;
+  bool light_changes_, views_differ_ = false;
   int threads_;
   Image<std::uint32_t> site_of_pixel_;
   std::vector<Added> added_;  // with the frame itself

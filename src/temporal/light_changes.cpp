@@ -2,6 +2,7 @@
 #include "temporal/light_changes.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/parallel.hpp"
 
@@ -11,55 +12,83 @@ namespace {
 // Means that differ by less than this share of them are the same: what the frames see there differs a little, too.
 constexpr double kSameShare = 0.02;
 
-LightSums operator+(const LightSums& a, const LightSums& b) {
-  return {a.luminance + b.luminance, a.square + b.square, a.samples + b.samples};
+// Sites of two groups of frames have about as many samples.
+constexpr double kAsMany = 1.25;
+
+LightSums sum_of(const LightSums& a, const LightSums& b) {
+  return {a.light + b.light,     a.light_square + b.light_square,
+          a.root + b.root,       a.root_square + b.root_square,
+          a.samples + b.samples, a.sites + b.sites};
 }
 
-// What the samples of each frame spread about its own mean: sum of squares, and how many are independent.
+// Of one kind of values: their mean in some frames.
+struct Mean {
+  double sum = 0;
+  std::uint64_t count = 0;
+};
+
+// What they spread about the mean of each frame: sum of squares, and how many are independent.
 struct Spread {
   double squares = 0, freedom = 0;
 
-  void add(const LightSums& sums) {
-    if (sums.samples > 1) {
-      const auto n = static_cast<double>(sums.samples);
-      squares += std::max(sums.square - sums.luminance * sums.luminance / n, 0.0);
+  void add(const Mean& mean, double square) {
+    if (mean.count > 1) {
+      const auto n = static_cast<double>(mean.count);
+      squares += std::max(square - mean.sum * mean.sum / n, 0.0);
       freedom += n - 1;
     }
   }
 };
 
 // How many deviations two means are apart, squared.
-double apart(const LightSums& a, const LightSums& b, const Spread& spread) {
-  if (a.samples == 0 || b.samples == 0 || !(spread.freedom > 0)) {
+double apart(const Mean& a, const Mean& b, const Spread& spread) {
+  if (a.count == 0 || b.count == 0 || !(spread.freedom > 0)) {
     return 0;
   }
-  const auto na = static_cast<double>(a.samples);
-  const auto nb = static_cast<double>(b.samples);
-  const double mean_a = a.luminance / na;
-  const double mean_b = b.luminance / nb;
-  const double same = kSameShare * (mean_a + mean_b) / 2;
+  const auto na = static_cast<double>(a.count);
+  const auto nb = static_cast<double>(b.count);
+  const double difference = a.sum / na - b.sum / nb;
+  const double same = kSameShare * (a.sum / na + b.sum / nb) / 2;
   const double variance = spread.squares / spread.freedom * (1 / na + 1 / nb) + same * same;
-  return variance > 0 ? (mean_a - mean_b) * (mean_a - mean_b) / variance : 0;
+  return variance > 0 ? difference * difference / variance : 0;
 }
+
+bool as_many(const LightSums& a, const LightSums& b) {
+  const double in_a = static_cast<double>(a.samples) * static_cast<double>(b.sites);
+  const double in_b = static_cast<double>(b.samples) * static_cast<double>(a.sites);
+  return in_a < kAsMany * in_b && in_b < kAsMany * in_a;
+}
+
+struct Spreads {
+  Spread light, root;
+
+  void add(const LightSums& sums) {
+    light.add({sums.light, sums.samples}, sums.light_square);
+    root.add({sums.root, sums.sites}, sums.root_square);
+  }
+  [[nodiscard]] double apart(const LightSums& a, const LightSums& b) const {
+    const double by_light = gazetrace::apart({a.light, a.samples}, {b.light, b.samples}, light);
+    return as_many(a, b) ? std::max(by_light, gazetrace::apart({a.root, a.sites}, {b.root, b.sites}, root)) : by_light;
+  }
+};
 
 // How many frames from the first of `frames` on, outwards from the frame, are in one light.
 std::size_t in_one_light(const std::vector<LightSums>& frames) {
   std::size_t end = frames.size();
   while (end > 1) {
-    Spread spread;
-    LightSums beyond;
-    for (std::size_t i = 0; i < end; ++i) {
-      spread.add(frames[i]);
-      beyond = beyond + frames[i];
+    Spreads spreads;
+    // Of the frames from each one on.
+    std::vector<LightSums> beyond(end + 1);
+    for (std::size_t i = end; i-- > 0;) {
+      spreads.add(frames[i]);
+      beyond[i] = sum_of(beyond[i + 1], frames[i]);
     }
     LightSums near;
     double most = kSigmas * kSigmas;
     std::size_t change = end;
     for (std::size_t i = 0; i + 1 < end; ++i) {
-      near = near + frames[i];
-      beyond = {beyond.luminance - frames[i].luminance, beyond.square - frames[i].square,
-                beyond.samples - frames[i].samples};
-      const double off = apart(near, beyond, spread);
+      near = sum_of(near, frames[i]);
+      const double off = spreads.apart(near, beyond[i + 1]);
       if (off > most) {
         most = off;
         change = i + 1;
@@ -74,6 +103,19 @@ std::size_t in_one_light(const std::vector<LightSums>& frames) {
 }
 
 }  // namespace
+
+void LightSums::add(double luminance, double square, std::uint32_t count) {
+  if (count == 0) {
+    return;
+  }
+  const double mean = std::max(luminance / count, 0.0);
+  light += luminance;
+  light_square += square;
+  root += std::sqrt(mean);
+  root_square += mean;
+  samples += count;
+  ++sites;
+}
 
 FrameRange frames_in_same_light(const std::vector<LightSums>& frames, std::size_t own) {
   const auto at = frames.begin() + static_cast<std::ptrdiff_t>(own);
@@ -101,7 +143,7 @@ std::vector<FrameRange> LightChanges::same_light(std::size_t own, int threads) c
           const auto other =
               static_cast<std::size_t>(by) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(bx);
           for (std::size_t frame = 0; frame < frames_; ++frame) {
-            around[frame] = around[frame] + sums_[other * frames_ + frame];
+            around[frame] = sum_of(around[frame], sums_[other * frames_ + frame]);
             if (other == block) {
               alone[frame] = sums_[other * frames_ + frame];
             }

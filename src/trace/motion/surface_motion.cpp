@@ -140,6 +140,13 @@ Vec3d point_of(const RenderScene& scene, const PixelHit& hit) {
                          point);
 }
 
+bool mirrors(const RenderScene& scene, const PixelHit& hit) {
+  const ShadingTriangle& triangle = scene.triangles[scene.geometries[hit.geometry].first_triangle + hit.primitive];
+  const std::uint32_t material = triangle.material_and_sign >> 1U;
+  const LayeredMaterial* layers = scene.layered.of(material);
+  return scene.materials[material].roughness < kMirrorRoughness || (layers != nullptr && layers->layers.transmission);
+}
+
 Vec2d center_of(std::size_t pixel, int width_px) {
   const auto width = static_cast<std::size_t>(width_px);
   return {static_cast<double>(pixel % width) + 0.5, static_cast<double>(pixel / width) + 0.5};
@@ -192,11 +199,12 @@ void trace_tile(const RenderScene& scene, const CameraRays& rays, int x0, int y0
     if (hits.geometry[k] == kNoId || hits.geometry[k] == kRejected) {
       continue;
     }
-    PixelHit hit{kNoId, hits.geometry[k], hits.primitive[k], hits.u[k], hits.v[k]};
+    PixelHit hit{kNoId, hits.geometry[k], hits.primitive[k], hits.u[k], hits.v[k], false};
     if (hits.instance[k] != kNoId) {
       hit.instance = hits.instance[k] - scene.first_instance_id;
       hit.geometry += scene.instances[hit.instance].first_geometry;
     }
+    hit.mirrors = mirrors(scene, hit);
     out.hits.pixels[work.pixel[k]] = hit;
     out.position_m.pixels[work.pixel[k]] = to_float(point_of(scene, hit) - out.view.camera.pose.position_m);
   }
@@ -216,7 +224,8 @@ void for_each_pixel_of(int width_px, int height_px, int threads, const Visit& vi
 }  // namespace
 
 PixelHits trace_pixel_hits(const RenderScene& scene, const OtherView& view, int width_px, int height_px, int threads) {
-  PixelHits out{view, Image<PixelHit>(width_px, height_px, {kNoId, kNoId, 0, 0, 0}), ImageRgb(width_px, height_px)};
+  PixelHits out{view, Image<PixelHit>(width_px, height_px, {kNoId, kNoId, 0, 0, 0, false}),
+                ImageRgb(width_px, height_px)};
   const CameraRays rays(view.camera, height_px);
   const int rows = (height_px + kTilePx - 1) / kTilePx;
   parallel_for(static_cast<std::size_t>(rows), threads, [&](std::size_t row) {
@@ -234,7 +243,7 @@ HitPlaces places_of_hits(const Scene& scene, const RenderScene& render_scene, co
   const int width_px = seen.hits.width_px;
   const int height_px = seen.hits.height_px;
   HitPlaces out{Image<std::uint32_t>(width_px, height_px), Image<Vec2d>(width_px, height_px),
-                ImageRgb(width_px, height_px), ImageRgb(width_px, height_px)};
+                ImageRgb(width_px, height_px), ImageRgb(width_px, height_px), Image<std::uint8_t>(width_px, height_px)};
   const HitFollower follower(scene, render_scene, other, width_px, height_px, true, threads);
   const HitFollower seen_at(scene, render_scene, seen.view, width_px, height_px, false, threads);
   const CameraRays rays(seen.view.camera, height_px);
@@ -249,6 +258,7 @@ HitPlaces places_of_hits(const Scene& scene, const RenderScene& render_scene, co
     const bool still = seen.view.t_video_ns == other.t_video_ns || (follower.stays(hit) && seen_at.stays(hit));
     const Vec3d then = still ? before : point_on(follower.corners_of(hit).then, hit);
     out.object.pixels[pixel] = follower.object(hit);
+    out.mirrors.pixels[pixel] = hit.mirrors ? 1 : 0;
     out.px.pixels[pixel] = still && same ? center_of(pixel, width_px) : follower.view().point(then).px;
     out.position_m.pixels[pixel] = to_float(then - other.camera.pose.position_m);
     out.moved_m.pixels[pixel] = to_float(then - before);
