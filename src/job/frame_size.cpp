@@ -56,7 +56,7 @@ void check_frame_memory(const JobSettings& job) {
     return;
   }
   // With the surfaces that filters work on, mostly one a pixel.
-  constexpr double kBytesOfAPixelInAWindow = 200;
+  constexpr double kBytesOfAPixelInAWindow = 250;
   const int frames = 1 + window.past_frames + window.future_frames;
   const double all = kBytesOfAPixelInAWindow * frames * job.size.width * job.size.height;
   const auto most = static_cast<double>(job.max_memory.bytes > 0 ? job.max_memory.bytes : most_memory_bytes());

@@ -207,9 +207,11 @@ void check_output_folders(const OutputSettings& output, const std::string& check
 
 AccumulateSettings accumulate_of(const JobSettings& job) {
   AccumulateSettings settings = job.accumulate;
-  const auto frames_in = [&](const DurationNs& time) {  // times that are meant to be of whole frames may be rounded
+  // Times that are meant to be of whole frames may be rounded. No sequence has as many frames as the bound.
+  const auto frames_in = [&](const DurationNs& time) {
     const double a_second = static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator);
-    return static_cast<std::int32_t>(std::floor(static_cast<double>(time.ns) * 1e-9 * a_second + 1e-3));
+    return static_cast<std::int32_t>(
+        std::min(std::floor(static_cast<double>(time.ns) * 1e-9 * a_second + 1e-3), 100'000.0));
   };
   const bool joins = settings.mode == AccumulateMode::window;
   settings.past_frames = joins ? frames_in(job.accumulate_past) : 0;

@@ -97,7 +97,7 @@ class Locks(Running):
         self.run_ok("render", *JOB, "-o", "c/g.####.exr", "--frames", "3")
         for name in ("run.json", "timing.csv"):  # as the version before named them
             (self.folder / "c" / f"g.{name}").rename(self.folder / "c" / name)
-        self.OUTPUTS = [*self.OUTPUTS, "--accumulate", "running", "--checkpoint", "b/history"]
+        self.OUTPUTS = [*self.OUTPUTS, "--exposure", "auto", "--exposure-smoothing", "1s", "--checkpoint", "b/history"]
         self.begin()
         self.refused(["-o", "c/g.####.exr", "-o", "b/f.####.png"], ["f.0003.png"], "--resume")
         self.write("b/history", "half of it")
