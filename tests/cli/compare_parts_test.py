@@ -22,6 +22,8 @@ quiet = true
 
 
 class CompareParts(harness.CliTest):
+    more = ()  # of compare
+
     def setUp(self):
         super().setUp()
         self.write("glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1.0)))
@@ -34,7 +36,7 @@ class CompareParts(harness.CliTest):
 
     def compare(self, reference, test, suffix="exr"):
         self.run_ok("compare", f"{reference}/p.####.{suffix}", f"{test}/p.####.{suffix}", "--metrics", "mse,flip", "--json",
-                    "out.json", "--overwrite")
+                    "out.json", "--overwrite", *self.more)
         result = json.loads((self.folder / "out.json").read_text())
         self.assertEqual(result["conditions"].pop("reference"), f"{reference}/p.####.{suffix}")
         self.assertEqual(result["conditions"].pop("test"), f"{test}/p.####.{suffix}")
@@ -65,6 +67,7 @@ class CompareParts(harness.CliTest):
 
     def test_parts_joined_by_their_history(self):
         history = ["--exposure", "auto", "--exposure-smoothing", "0.5s"]
+        self.more = ["--anyway"]  # the reference has another exposure
         self.render("whole", "--frames", "1-4", *history)
         self.render("parts", "--frames", "1-2", "--chunk", "1/1", *history, "--checkpoint", "history.bin")
         self.render("parts", "--frames", "3-4", "--chunk", "1/1", *history, "--resume-from", "history.bin")
