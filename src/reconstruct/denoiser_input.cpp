@@ -128,8 +128,8 @@ DenoiserInput denoiser_input(const SparseFrame& sparse, const SamplingMap& map, 
   out.normal = out.radiance;
   out.samples = ImageGray(map.width_px, map.height_px);
   const auto is_several = [](std::uint32_t count) { return count > 1; };
-  const bool has_halves = !sparse.first_half.empty() && sparse.samples_of_others.empty() &&
-                          std::any_of(sparse.count.begin(), sparse.count.end(), is_several);
+  const bool has_halves =
+      !sparse.first_half.empty() && std::any_of(sparse.count.begin(), sparse.count.end(), is_several);
   if (has_halves) {
     out.halves = {out.radiance, out.radiance};
   }

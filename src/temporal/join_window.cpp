@@ -82,6 +82,9 @@ class WindowJoin::SiteAdder {
     if (!out_.light_groups.empty()) {
       add_light_groups(site);
     }
+    if (!out_.first_half.empty()) {
+      add_first_half(site, count[0] > 0 && count[1] > 0);
+    }
     add_surfaces(site, count, surfaces);
     if (!out_.first_hits.empty()) {
       add_first_hits(site, count);
@@ -142,6 +145,22 @@ class WindowJoin::SiteAdder {
       });
     }
     return count;
+  }
+
+  // `by_frames`: as difference() has it.
+  void add_first_half(std::size_t site, bool by_frames) {
+    Vec3d radiance;
+    std::uint32_t samples = 0;
+    for (const Joining& one : joining_) {
+      if (!by_frames) {
+        radiance += to_double(sparse(one).first_half[one.site].radiance);
+        samples += sparse(one).first_half[one.site].count;
+      } else if (half_of(one) == 0) {
+        radiance += to_double(sparse(one).sum[one.site]);
+        samples += sparse(one).count[one.site];
+      }
+    }
+    out_.first_half[site] = {to_float(radiance), samples};
   }
 
   void add_surfaces(std::size_t site, const std::array<std::uint32_t, 2>& count, std::vector<SurfaceSums>& surfaces) {
@@ -403,6 +422,7 @@ JoinedSamples WindowJoin::joined() const {
   out.guides = first.guides;
   out.light_groups.resize(first.light_groups.size());
   out.half_difference.resize(first.half_difference.size());
+  out.first_half.resize(first.first_half.size());
   out.first_surface.resize(first.first_surface.size());
   out.first_hits.resize(first.first_hits.size());
   const CameraRays rays(*own_.camera, own_map.height_px);
