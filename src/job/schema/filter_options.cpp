@@ -38,10 +38,11 @@ void check_filter_name(const std::string& name, const std::string& place) {
 void add_filter_options(JobSchema& schema) {
   schema.group("Between the samples");
   schema
-      .value("--filter", &JobSettings::filter, "NAME", Touch::filter,
-             "Fills pixels between samples and takes noise away ('gazetrace list filters'; where the samples are is "
-             "--density, which has a 'linear', too). auto: oidn where Open Image Denoise is found, else guided; linear, "
-             "which passes single pixels through, for uniform frames with --only-pixel")
+      .value(
+          "--filter", &JobSettings::filter, "NAME", Touch::filter,
+          "Fills pixels between samples and takes noise away ('gazetrace list filters'; where the samples are is "
+          "--density, which has a 'linear', too). auto: oidn where Open Image Denoise is found, else guided; linear, "
+          "which passes single pixels through, for uniform frames with --only-pixel")
       .checked_by(check_filter_name)
       .with(Trait::always_stated)
       .with(Trait::everyday);
