@@ -183,14 +183,14 @@ reference-rate = 8
 metrics = ["mse"]
 controls = false
 """
-HISTORY_TOML = 'exposure = "auto"\nexposure-smoothing = "0.5s"\nfilter = "guided"\n'
+HISTORY_TOML = job_toml(frames=6, folder="out", more='exposure = "auto"\nexposure-smoothing = "0.5s"\nfilter = "guided"\n')
 
 
 class FarmFiles(Farm):
     def setUp(self):
         super().setUp()
         self.write("farm.toml", FARM_TOML)
-        self.write("history.toml", FARM_TOML + HISTORY_TOML)
+        self.write("history.toml", HISTORY_TOML)
 
     def farm(self, *arguments, job="farm.toml", program=None):
         return (program or self.run_ok)("farm", job, *arguments)
@@ -255,7 +255,7 @@ class Engines(FarmFiles):
         self.assertTrue(self.status()["is_done"])
 
     def test_a_job_with_a_checkpoint_and_a_name_of_words(self):
-        self.write("my job.toml", FARM_TOML + HISTORY_TOML + 'checkpoint = "out/history"\n')
+        self.write("my job.toml", HISTORY_TOML + 'checkpoint = "out/history"\n')
         self.farm("--engine", "slurm", "--chunks", "2", job="my job.toml")
         self.assertIn("#SBATCH --job-name=my_job\n", (self.folder / "out/farm/task.sbatch").read_text())
         for task in ("1-2", "finish"):

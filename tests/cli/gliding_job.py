@@ -19,8 +19,10 @@ exposure = 0.5
 
 
 def job_toml(size="48x27", samples="4, 2, 1", frames=None, folder=None, more=""):
-    """`folder`: where the job says that its pictures go, as f.####.exr and f.####.png."""
+    """`folder`: where the job says that its pictures go, as f.####.exr and f.####.png. `more` may state another exposure."""
     text = JOB.format(size=size, samples=samples)
+    if "exposure = " in more:
+        text = text.replace("exposure = 0.5\n", "")
     if frames is not None:
         text += f'frames = "1-{frames}"\n'
     if folder is not None:
