@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -45,14 +46,18 @@ void add_external_command(CLI::App& above, const std::string& name, const std::s
   });
 }
 
+bool can_run(const fs::path& file) {
+  std::error_code ignored;
+  return fs::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0;
+}
+
 std::optional<fs::path> find_on_path(const std::string& name) {
   const char* const variable = std::getenv("PATH");
   std::string rest = variable == nullptr ? std::string() : variable;
   while (!rest.empty()) {
     const std::size_t end = std::min(rest.find(':'), rest.size());
     const fs::path file = fs::path(rest.substr(0, end)) / name;
-    std::error_code ignored;
-    if (end > 0 && fs::is_regular_file(file, ignored)) {
+    if (end > 0 && can_run(file)) {
       return file;
     }
     rest.erase(0, end + 1);
@@ -81,11 +86,10 @@ std::optional<ExternalProgram> find_external_program(const CLI::App& program, st
   if (at >= words.size() || !is_name(words[at]) || !has_commands) {
     return std::nullopt;
   }
-  std::error_code ignored;
-  std::optional<fs::path> path = own_program().parent_path() / name;
-  if (!fs::is_regular_file(*path, ignored)) {
-    path = find_on_path(name);
-  }
+  // Beside a program that does not know where it lies would be the working folder, where anybody may have put a file.
+  const fs::path beside = own_program().parent_path() / name;
+  const std::optional<fs::path> path =
+      beside.is_absolute() && can_run(beside) ? std::optional(beside) : find_on_path(name);
   if (path) {
     const std::vector<std::string> rest(words.begin() + static_cast<std::ptrdiff_t>(at) + 1, words.end());
     return ExternalProgram{*path, asks_for_help ? std::vector<std::string>{"--help"} : rest};
@@ -105,8 +109,14 @@ int run_external_program(const ExternalProgram& external) {
   }
   pointers.push_back(nullptr);
   std::fflush(nullptr);
+  // What this program ignores, that one would ignore as well, and a closed pipe would be an error to it.
+  std::signal(SIGPIPE, SIG_DFL);
+  std::signal(SIGXFSZ, SIG_DFL);
   execv(path.c_str(), pointers.data());
-  throw Error(ErrorKind::runtime, path, std::string("cannot be started: ") + std::strerror(errno));
+  const int reason = errno;
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  throw Error(ErrorKind::runtime, path, std::string("cannot be started: ") + std::strerror(reason));
 }
 
 }  // namespace gazetrace

@@ -247,6 +247,14 @@ class Report(reports.ReportTest):
         self.assertEqual(self.run_ok("gaze", "wave", "1", environment=path).stdout, "waves 1\n")
         self.assertEqual(self.run_ok("help", "gaze", "wave", environment=path).stdout, "waves --help\n")
         self.assert_refused(["hello-there"], ["unknown command"])
+        self.assert_refused(["--config", "x.toml", "report", "here"], ["none of its options come before it"])
+        self.write("first/gazetrace-gaze-wave", "not for running")
+        first = {"PATH": f"{self.folder}/first:{path['PATH']}"}
+        self.assertEqual(self.run_ok("gaze", "wave", "2", environment=first).stdout, "waves 2\n")
+        # A closed pipe ends it, as it ends every other program.
+        self.write("bin/gazetrace-signals", "#!/bin/sh\ngrep SigIgn /proc/self/status\n").chmod(0o755)
+        ignored = int(self.run_ok("signals", environment=path, alone=True).stdout.split()[1], 16)
+        self.assertEqual(ignored & (1 << 12 | 1 << 24), 0)
         self.assertIn("--max-mib", self.run_ok("help", "report").stdout)
         self.assertIn("report", self.run_ok("--help").stdout)
 
