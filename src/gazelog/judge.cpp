@@ -128,7 +128,8 @@ class Judge {
             ? fmt::format("{:.0f} % of them lie beside the display; counted from its center, {:.0f} %", percent(beside),
                           percent(beside_center))
             : "";
-    if (!is_centered && percent(negative) > 25) {
+    constexpr std::size_t kFew = 10;
+    if (!is_centered && percent(negative) > (count < kFew ? 50 : 25)) {
       add({"origin", "the positions count from the center of the display rather than from its corner",
            fmt::format("{:.0f} % of them are negative{}{}", percent(negative), lie.empty() ? "" : ", and ", lie),
            "`gaze-origin` center"},

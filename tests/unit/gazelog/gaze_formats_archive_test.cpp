@@ -164,25 +164,27 @@ std::string xdf_without_unit(const Vec2f& most, const Vec2f& tenth) {
 }
 
 TEST_F(GazeFormats, XdfWithoutAUnit) {
-  const GazeLog fractions = read("a.xdf", xdf_without_unit({0.25F, 0.5F}, {0.75F, 0.5F}));
+  const std::string quarter = xdf_without_unit({0.25F, 0.5F}, {0.75F, 0.5F});
+  EXPECT_THAT(refusal("a.xdf", quarter, {}), HasSubstr("`gaze-unit` fraction"));
+  GazeReadOptions importing;
+  importing.accepts_inferred = true;
+  const GazeLog fractions = read("a.xdf", quarter, importing);
   EXPECT_EQ(fractions.samples[0].u, 0.25);
-  EXPECT_THAT(fractions.warnings.at(0), HasSubstr("that the positions are in fraction"));
+  EXPECT_EQ(fractions.conventions.unit.evidence, Evidence::statistics);
   EXPECT_EQ(fractions.conventions.origin.value, PositionOrigin::top_left);
-  // Marks of missing values count in the guess.
   GazeReadOptions options;
   options.display =
       DisplayGeometry{.width_px = 1000, .height_px = 500, .width_cm = 50, .height_cm = 25, .distance_cm = 50};
+  options.columns.position_unit = PositionUnit::px;
   const GazeLog marks = read("b.xdf", xdf_without_unit({0.25F, 0.5F}, {-32768, -32768}), options);
-  EXPECT_THAT(marks.warnings.at(0), HasSubstr("that the positions are in px"));
   EXPECT_EQ(marks.samples[0].v, 0.5 / 500);
   EXPECT_EQ(marks.samples[9].validity, GazeValidity::lost);
-  // Degrees count from the center, which somebody has to say.
+  // Degrees count from the center.
   const std::string degrees = xdf_without_unit({-10, 5}, {10, 0});
-  EXPECT_THAT(refusal("c.xdf", degrees, options), HasSubstr("positions in degrees cannot count from the top-left"));
-  options.columns.origin = PositionOrigin::center;
-  const GazeLog said = read("c.xdf", degrees, options);
-  EXPECT_THAT(said.warnings.at(1), HasSubstr("count from the top-left; `gaze-origin` center was given and is used"));
-  EXPECT_NEAR(said.samples[9].u, 0.5 + std::tan(10 * kRadPerDeg), 1e-12);
+  options.columns.position_unit = PositionUnit::automatic;
+  EXPECT_THAT(refusal("c.xdf", degrees, options), HasSubstr("degrees or centimetres?"));
+  options.columns.position_unit = PositionUnit::deg;
+  EXPECT_NEAR(read("c.xdf", degrees, options).samples[9].u, 0.5 + std::tan(10 * kRadPerDeg), 1e-12);
 }
 
 // Expected times are pyxdf 1.17.5's of the same bytes, to 1 ns.
