@@ -223,8 +223,10 @@ void plan_positions(ColumnPlan& plan, const Finder& find, const GazeColumns& dec
     return;
   }
   const bool is_named = !declared.x.empty() || !declared.y.empty();
-  const bool is_combined = (find.by_role(kScreenX) && find.by_role(kScreenY)) || find.by_role(kDirectionX);
-  if (!is_named && !is_combined && plan_eyes(plan, find, declared)) {
+  const auto is_combined = [&] {
+    return (find.by_role(kScreenX) && find.by_role(kScreenY)) || find.by_role(kDirectionX);
+  };
+  if (!is_named && !is_combined() && plan_eyes(plan, find, declared)) {
     return;
   }
   GazeSource source;

@@ -76,8 +76,10 @@ bool is_prose(const GazeFile& file) {
                            : text.find(',') != std::string_view::npos ? ','
                                                                       : ' ';
     split_cells(text, separator, cells);
-    const auto numbers = std::count_if(cells.begin(), cells.end(),
-                                       [](std::string_view cell) { return number_from(trim(cell)).has_value(); });
+    const auto numbers = std::count_if(cells.begin(), cells.end(), [](std::string_view cell) {
+      const std::size_t first = cell.find_first_not_of(" \t\"'[(-+");
+      return first != std::string_view::npos && cell[first] >= '0' && cell[first] <= '9';
+    });
     if (numbers >= 2) {
       return false;
     }

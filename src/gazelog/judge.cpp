@@ -292,6 +292,7 @@ UnitReading read_unit(const RawRows& rows, const RawGaze& raw, const DisplayGeom
                                    m.in_words() + ", and the display's size is known in both", "`gaze-unit` px or mm"};
     } else if (!reading.is_plain) {
       reading.doubt = inferred(reading);
+      reading.doubt->setting += px.x > 0 ? "" : " `screen-px` W,H";
     }
   }
   return reading;

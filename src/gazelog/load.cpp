@@ -153,6 +153,10 @@ RawGaze read_opened(GazeFile& file, const std::string& path, const GazeReadOptio
     if (guesses.empty() || guesses.front().confidence < kClaimed) {
       refuse_foreign_file(file);
     }
+    if (guesses.empty()) {
+      throw Error(ErrorKind::input, path, "is not a gaze log of a known format",
+                  "give a CSV or TSV with a header, or name the format with `gaze-format`");
+    }
     format = guesses.front().format;
     confidence = guesses.front().confidence;
   }

@@ -40,7 +40,7 @@ class RowReader {
 
   void read_all(RawGaze& raw) {
     while (rows_.next()) {
-      if (others_.is_other(rows_) || is_message(raw)) {
+      if (is_message(raw) || others_.is_other(rows_)) {
         continue;
       }
       rows_.check_length();

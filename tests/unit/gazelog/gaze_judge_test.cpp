@@ -85,6 +85,7 @@ TEST_F(GazeJudge, UnitsOfPsychoPyAreNeverDegreesByGuess) {
   expect_true(read(norm));
   // Called degrees, its saccades last too long for their size.
   options_.columns.position_unit = PositionUnit::deg;
+  options_.frame = GazeFrame::head;
   EXPECT_THAT(inspect(norm).verdict, Not(HasSubstr("nothing suspicious")));
 }
 

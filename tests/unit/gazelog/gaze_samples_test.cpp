@@ -452,7 +452,7 @@ TEST(GazeSamples, GazeBaseVrInDegrees) {
 
 TEST(GazeSamples, PlainCsvCanBeLookedAtWithoutItsDisplay) {
   SKIP_WITHOUT("plain-csv/gaze-toy-example.csv");
-  EXPECT_THAT(refusal(sample("plain-csv/gaze-toy-example.csv")), HasSubstr("give `screen-px` W,H"));
+  EXPECT_THAT(refusal(sample("plain-csv/gaze-toy-example.csv")), HasSubstr("`gaze-unit` px `screen-px` W,H"));
   GazeReadOptions options;
   options.guess_display = true;
   const GazeLog log = load_gaze_log(sample("plain-csv/gaze-toy-example.csv"), options);
