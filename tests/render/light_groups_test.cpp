@@ -195,6 +195,9 @@ TEST(LightGroups, LayersAddUpToThePictureUnderEveryFilter) {
   const Scene scene = room();
   PathTracer tracer(scene, threads(2));
   for (const FilterInfo& filter : reconstruction_filters()) {
+    if (filter.name == "oidn" && denoiser_library().path.empty()) {
+      continue;
+    }
     FrameSettings settings;
     DensitySampling density = parse_density("mar");
     density.full_rate_spp = 8;

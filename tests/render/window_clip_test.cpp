@@ -55,6 +55,8 @@ TEST(WindowClip, WindowsAreLitByWhatTheWholeFrameLearns) {
   settings.reconstruction.filter = "guided";
   settings.frames_per_second = 24;
   settings.threads = 2;
+  settings.trace.max_bounces = 3;  // for which learning clearly pays in this room
+  settings.trace.russian_roulette = false;
   const ColorPipeline color(ColorSettings{});
   WindowClip clip(tracer, judged, settings, color);
   ASSERT_FALSE(clip.windows().is_whole_frame());
