@@ -35,6 +35,8 @@ constexpr std::int64_t kFirstPosition = std::int64_t{1} << 60U;
 constexpr std::int64_t kTextPosition = std::int64_t{1} << 62U;  // held by who reads and writes the text
 constexpr int kFlags = O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;     // a pipe by that name would keep us waiting
 constexpr std::size_t kNumberDigits = 9;
+constexpr int kNumberBits = 30;  // of a position; the others are made of the rest of the name
+constexpr std::int64_t kNumbersOfName = std::int64_t{1} << static_cast<unsigned>(kNumberBits);
 constexpr std::size_t kLongestText = 4U << 20U;  // that is believed of a lock's file
 // Of one folder and run: the kernel looks through all ranges of a file for each that is added.
 constexpr std::size_t kMostRanges = 2000;
@@ -139,7 +141,8 @@ void write_owners(int file, const Owner& own) {
   static_cast<void>(::ftruncate(file, static_cast<off_t>(text.size())));
 }
 
-// Files by their positions, as ranges. Of more than can be held the nearest are held as one, with what is between them.
+// Files by their positions, as ranges. Of more than can be held the nearest are held as one, with what is between them:
+// nothing but files whose names differ from theirs in the number that counts, so that other sequences stay free.
 std::vector<Range> ranges_of(const FolderLock::Files& files) {
   std::vector<Range> ranges;
   const auto add = [&](std::int64_t begin, std::int64_t end, std::int64_t gap) {
@@ -152,7 +155,7 @@ std::vector<Range> ranges_of(const FolderLock::Files& files) {
   for (const auto& [position, file] : files) {
     add(position, position + 1, 0);
   }
-  for (std::int64_t gap = 1; ranges.size() > kMostRanges; gap *= 2) {
+  for (std::int64_t gap = 1; ranges.size() > kMostRanges && gap < kNumbersOfName / 2; gap *= 2) {
     for (const Range& range : std::exchange(ranges, {})) {
       add(range.begin, range.end, gap);
     }
@@ -199,11 +202,21 @@ int open_lock(const std::string& path) {
 
 std::int64_t lock_position(const std::string& name) {
   constexpr const char* kDigits = "0123456789";
-  const std::size_t end = name.find_last_of(kDigits) + 1;  // 0 without a number
-  std::size_t begin = end;
-  while (begin > 0 && end - begin < kNumberDigits && name.find_first_of(kDigits, begin - 1) == begin - 1) {
-    --begin;
+  // The longest number of the file's own name, the last of several, counts: frames are padded, cameras are not.
+  const std::size_t file = name.find_last_of('/') + 1;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  for (std::size_t from =
+           name.find_first_of(kDigits, name.find_first_of(kDigits, file) == std::string::npos ? 0 : file);
+       from != std::string::npos;) {
+    const std::size_t to = std::min(name.find_first_not_of(kDigits, from), name.size());
+    if (to - from >= end - begin) {
+      begin = from;
+      end = to;
+    }
+    from = name.find_first_of(kDigits, to);
   }
+  begin = std::max(begin, end - std::min(end, kNumberDigits));
   const auto number_at = [&](std::size_t from, std::size_t to) {
     std::int64_t number = -1;
     std::from_chars(name.data() + from, name.data() + to, number);
@@ -224,7 +237,7 @@ std::int64_t lock_position(const std::string& name) {
     at = next;
   }
   add("#" + name.substr(end));
-  return kFirstPosition + static_cast<std::int64_t>((hash & 0xFFFFFFFU) << 30U) + number;
+  return kFirstPosition + static_cast<std::int64_t>((hash & 0xFFFFFFFU) << static_cast<unsigned>(kNumberBits)) + number;
 }
 
 std::string lock_path(const std::string& folder) {

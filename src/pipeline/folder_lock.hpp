@@ -11,9 +11,9 @@ namespace gazetrace {
 
 std::string lock_path(const std::string& folder);
 
-// Where a folder's lock is held for a file, by its name from that folder on. The last number of the name counts
-// positions, so that the frames of a sequence lie side by side; what else is in the name decides where they begin. The
-// same number elsewhere in it, as in the names of folders, decides nothing.
+// Where a folder's lock is held for a file, by its name from that folder on. The longest number of the file's own name,
+// the last of several, counts positions, so that the frames of a sequence lie side by side; what else is in the name
+// decides where they begin. The same number elsewhere in it, as in the names of folders, decides nothing.
 std::int64_t lock_position(const std::string& name);
 
 class FolderLock {

@@ -152,6 +152,20 @@ TEST_F(OutputLocks, OfVeryManyRangesAFewAreHeld) {
   EXPECT_EQ(refusal(run_of(folder / "a/f.####.png", folder / "other"), {40001}), "");
 }
 
+// Wherever the frame's number stands in the name: other frames and other sequences stay free.
+TEST_F(OutputLocks, ManyFramesHoldNothingOfOthers) {
+  std::vector<std::int32_t> first(2500);
+  std::iota(first.begin(), first.end(), 1);
+  for (const char* name : {"a/f.####.cam1.png", "a/f.####.v2024.png"}) {
+    const OutputLock held = lock_outputs(run_of(folder / name, folder / "record"), first);
+    EXPECT_NE(refusal(run_of(folder / name, folder / "other"), {2500}), "") << name;
+    EXPECT_EQ(refusal(run_of(folder / name, folder / "other"), {2501, 4772, 5000}), "") << name;
+    for (const char* foreign : {"a/g.####.png", "a/f.####.cam2.png", "a/f.####.png"}) {
+      EXPECT_EQ(refusal(run_of(folder / foreign, folder / "other"), {1, 1250, 2501}), "") << name << foreign;
+    }
+  }
+}
+
 // It may be stopped for days while it writes down its name.
 TEST_F(OutputLocks, ARunThatIsStoppedAtTheTextHoldsUpNobody) {
   const PipelineSettings run = run_of(folder / "a/f.####.png", folder / "a");
