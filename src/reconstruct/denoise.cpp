@@ -18,6 +18,9 @@ constexpr int kFineAround = 6;
 constexpr int kCoarseAround = 2 * kCoarsePx;
 // Errors count relative to the light, which counts as at least this share of the picture's mean.
 constexpr double kLeastLight = 0.01;
+// Both halves go through the network where a pixel of so many has kSamplesOfBlend: a small fovea of many samples has a
+// wide margin of few.
+constexpr std::size_t kLeastPart = 32;
 // Nothing is given back to pixels with half of kSamplesOfBlend, everything from kSamplesOfBlend on.
 float share_of_samples(float samples) {
   return std::clamp(2 * samples / kSamplesOfBlend - 1, 0.0F, 1.0F);
@@ -151,9 +154,8 @@ ImageRgb blend(const DenoiserInput& input, const ImageRgb& denoised, int threads
 ImageRgb denoise(const DenoiserInput& input, int threads) {
   ImageRgb denoised = open_image_denoise(input, threads);
   const std::vector<float>& samples = input.samples.pixels;
-  const double all = std::accumulate(samples.begin(), samples.end(), 0.0);
-  const bool blends =
-      !input.halves[0].empty() && !(all < static_cast<double>(kSamplesOfBlend) * static_cast<double>(samples.size()));
+  const auto many = std::count_if(samples.begin(), samples.end(), [](float one) { return one >= kSamplesOfBlend; });
+  const bool blends = !input.halves[0].empty() && kLeastPart * static_cast<std::size_t>(many) >= samples.size();
   return blends ? blend(input, denoised, threads) : denoised;
 }
 

@@ -6,8 +6,8 @@
 
 namespace gazetrace {
 
-// From this mean number of samples a pixel on the network runs three times: over the frame and over each half of its
-// samples. What a half has beyond the network's picture of it is right as far as the other half has it as well: the
+// Where a part of the pixels has this many samples, the network runs three times: over the frame and over each half of
+// its samples. What a half has beyond the network's picture of it is right as far as the other half has it as well: the
 // noise of the two is independent, and what the network leaves out is in both. In two bands of coarseness, the finer of
 // which ends at kCoarsePx, the share by which the halves agree around a pixel is given back to it. With many samples
 // the picture so becomes their mean.

@@ -89,6 +89,19 @@ TEST_F(Denoise, IsTheNetworksWithFewSamples) {
   EXPECT_EQ(denoise(picture.input, 2), open_image_denoise(picture.input, 2));
 }
 
+// A fovea of many samples, in a margin that has few and keeps the network's picture.
+TEST_F(Denoise, GivesBackToTheFewPixelsThatHaveManySamples) {
+  Picture picture = planted({.texture = 0.1F, .noise = 0.01F});
+  ImageGray& samples = picture.input.samples;
+  for (std::size_t i = samples.pixels.size() / 8; i < samples.pixels.size(); ++i) {
+    samples.pixels[i] = 1;
+  }
+  const ImageRgb network = open_image_denoise(picture.input, 2);
+  const ImageRgb denoised = denoise(picture.input, 2);
+  EXPECT_NE(denoised.pixels.front(), network.pixels.front());
+  EXPECT_EQ(denoised.pixels.back(), network.pixels.back());
+}
+
 TEST_F(Denoise, ThreadsChangeNoBit) {
   const Picture picture = planted({.texture = 0.05F, .noise = 0.05F});
   EXPECT_EQ(denoise(picture.input, 1), denoise(picture.input, 2));
