@@ -51,9 +51,12 @@ std::optional<Saccades> find_saccades(const std::vector<Point>& points) {
   if (steps.size() < 50) {
     return std::nullopt;
   }
-  const double step_ms = lower_quantile(steps, 0.5);
-  const double rest = lower_quantile(lengths, 0.5);
-  const double fast = lower_quantile(lengths, 0.98);
+  const auto quantile = [](std::vector<double> values, double share) {  // of a copy: a quantile changes the order
+    return lower_quantile(values, share);
+  };
+  const double step_ms = quantile(steps, 0.5);
+  const double rest = quantile(lengths, 0.5);
+  const double fast = quantile(lengths, 0.98);
   if (!(step_ms > 0) || step_ms > kLongestStepMs || !(fast > 8 * rest)) {
     return std::nullopt;
   }

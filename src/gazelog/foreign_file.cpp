@@ -76,11 +76,13 @@ bool is_prose(const GazeFile& file) {
                            : text.find(',') != std::string_view::npos ? ','
                                                                       : ' ';
     split_cells(text, separator, cells);
-    const auto numbers = std::count_if(cells.begin(), cells.end(), [](std::string_view cell) {
-      const std::size_t first = cell.find_first_not_of(" \t\"'[(-+");
+    const auto is_number = [](std::string_view cell) {
+      const std::size_t first = cell.find_first_not_of(" \t\"'[(-+.");
       return first != std::string_view::npos && cell[first] >= '0' && cell[first] <= '9';
-    });
-    if (numbers >= 2) {
+    };
+    // Words between blanks may hold a number or two; in a cell of a table it stands first.
+    const std::ptrdiff_t enough = separator == ' ' ? 2 : 1;
+    if (std::count_if(cells.begin(), cells.end(), is_number) >= enough) {
       return false;
     }
   }
