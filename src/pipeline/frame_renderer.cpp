@@ -123,6 +123,9 @@ RenderedFrame FrameRenderer::finish(const std::vector<const WindowFrame*>& windo
                                     TemporalHistory& history) const {
   const WindowFrame& frame = *window[own];
   const FrameRequest& request = frame.request;
+  if (settings_.accumulate.mode != AccumulateMode::window) {
+    return finish(request, frame.traced, history);  // traced without the surfaces by which frames join
+  }
   const auto samples_of = [](const WindowFrame& one) {
     return WindowSamples{one.request.frame, &one.request.camera, &one.traced.map, &one.traced.sparse};
   };

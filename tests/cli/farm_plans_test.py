@@ -109,7 +109,7 @@ class Plans(FarmFiles):
         self.assertIn("glide.gltf", refused.stderr)
         for name in ("glide.gltf", "log.csv"):
             shutil.copy(self.folder / name, self.folder / "job")
-        self.write("job/farm.toml", FARM_TOML.replace('"out/', '"job/out/') + HISTORY_TOML)
+        self.write("job/farm.toml", HISTORY_TOML.replace('"out/', '"job/out/'))
         self.farm("--confine", "--engine", "slurm", "--chunks", "2", job="job/farm.toml")
         script = next(self.folder.rglob("task.sh")).read_text()
         self.assertEqual(script.count(" --confine"), 2)  # of the chunks, and of what finishes them
