@@ -93,7 +93,7 @@ FinishedRun run_job(const Job& job, const RunObserver& observer, const RunOption
   const RunRecordFile file(files.empty() ? std::string() : files.front(), options.words);
   run.record = start_run_record(resolved, tracer, *color, options.command_line);
   if (resolved.job.settings.resume) {
-    file.warn_of_other_machine(run.record, resolved.warnings);
+    file.check_machine(run.record, resolved.warnings);
     run.record.warnings = resolved.warnings;
   }
   const StartedRun started{resolved, tracer, color, files};

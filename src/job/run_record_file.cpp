@@ -37,7 +37,7 @@ RunRecordFile::RunRecordFile(std::string path, Words words) : path_(std::move(pa
   }
 }
 
-void RunRecordFile::warn_of_other_machine(const RunRecord& now, Warnings& warnings) const {
+void RunRecordFile::check_machine(const RunRecord& now, Warnings& warnings) const {
   if (path_.empty() || !std::filesystem::exists(path_)) {
     return;
   }
@@ -48,14 +48,19 @@ void RunRecordFile::warn_of_other_machine(const RunRecord& now, Warnings& warnin
     warnings.push_back(error.what());
     return;
   }
+  if (before.denoiser != now.denoiser) {
+    const auto name = [](const std::string& denoiser) { return denoiser.empty() ? "none" : denoiser; };
+    throw Error(ErrorKind::input, path_,
+                fmt::format("the frames so far were denoised by '{}', and those to come would be by '{}'",
+                            name(before.denoiser), name(now.denoiser)),
+                "render on with the same library and kind of machine, or anew with `overwrite`");
+  }
   if (before.instruction_set != now.instruction_set || before.build != now.build ||
-      before.ray_library != now.ray_library || before.denoiser != now.denoiser) {
-    warnings.push_back(
-        fmt::format("{}: the run so far was made by '{}, {}, {}{}{}', this one is '{}, {}, {}{}{}'; frames may "
-                    "differ in their last bits",
-                    path_, before.build, before.instruction_set, before.ray_library,
-                    before.denoiser.empty() ? "" : ", ", before.denoiser, now.build, now.instruction_set,
-                    now.ray_library, now.denoiser.empty() ? "" : ", ", now.denoiser));
+      before.ray_library != now.ray_library) {
+    warnings.push_back(fmt::format(
+        "{}: the run so far was made by '{}, {}, {}', this one is '{}, {}, {}'; frames may differ in their last bits",
+        path_, before.build, before.instruction_set, before.ray_library, now.build, now.instruction_set,
+        now.ray_library));
   }
 }
 

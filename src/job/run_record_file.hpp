@@ -18,8 +18,9 @@ class RunRecordFile {
   // RunOptions::words.
   RunRecordFile(std::string path, Words words);
 
-  // Embree and libm choose kernels by the machine: frames of two kinds of machine may differ in their last bits.
-  void warn_of_other_machine(const RunRecord& now, Warnings& warnings) const;
+  // Embree and libm choose kernels by the machine: frames of two kinds of machine may differ in their last bits, which
+  // is a warning. Two denoisers make other pictures: Error(input).
+  void check_machine(const RunRecord& now, Warnings& warnings) const;
   void write(RunRecord record) const;
   // Puts back the record of the earlier run, or none where there was none.
   void put_back() const;

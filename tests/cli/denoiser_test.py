@@ -36,6 +36,17 @@ class Denoiser(harness.CliTest):
                             ["Open Image Denoise was not found"], **none)
         self.assertIn("denoiser: none", self.run_ok("version", **none).stdout)
 
+    def test_no_sequence_is_made_by_two_denoisers(self):
+        sequence = ["render", "box.gltf", "--sampling", "uniform", "--spp", "1", "--size", "32x18", "--filter", "guided", "-o", "f.####.exr"]
+        self.run_ok(*sequence, "--frames", "1-2")
+        record = self.record("f.run.json")
+        record["denoiser"] = "Open Image Denoise 2.3.3, quality high, built-in weights, avx2"
+        self.write("f.run.json", json.dumps(record))
+        (self.folder / "f.0002.exr").unlink()
+        self.assert_refused([*sequence, "--frames", "1-2", "--resume"], ["f.run.json", "Open Image Denoise 2.3.3", "'none'"])
+        self.assertFalse((self.folder / "f.0002.exr").exists())
+        self.run_ok(*sequence, "--frames", "1-2", "--overwrite")
+
     def test_pictures_are_compared_and_looked_at_without_it(self):
         if not json.loads(self.run_ok("version", "--json").stdout)["denoiser"]["path"]:
             self.skipTest("Open Image Denoise was not found")
