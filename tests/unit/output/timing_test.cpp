@@ -43,20 +43,21 @@ TimingRow example(std::int32_t frame) {
 }
 
 TEST(Timing, ColumnsNameTheirUnits) {
-  EXPECT_THAT(timing_columns(),
-              testing::ElementsAre(
-                  "frame", "plan_ms", "learn_ms", "pilot_ms", "trace_ms", "guides_ms", "reconstruct_ms", "temporal_ms",
-                  "exposure_ms", "layers_ms", "color_ms", "write_ms", "total_ms", "trace_cpu_ms", "pixels", "samples",
-                  "pilot_samples", "learning_paths", "rays_primary", "rays_bounce", "rays_shadow", "rejected_rays",
-                  "non_finite_samples", "fovea_pixels", "fovea_samples", "fovea_cpu_ms", "intermediate_pixels",
-                  "intermediate_samples", "intermediate_cpu_ms", "periphery_pixels", "periphery_samples",
-                  "periphery_cpu_ms", "uniform_pixels", "uniform_samples", "uniform_cpu_ms", "block_1_pixels",
-                  "block_1_samples", "block_1_cpu_ms", "block_2_pixels", "block_2_samples", "block_2_cpu_ms",
-                  "block_4_pixels", "block_4_samples", "block_4_cpu_ms", "block_8_pixels", "block_8_samples",
-                  "block_8_cpu_ms", "block_16_pixels", "block_16_samples", "block_16_cpu_ms", "block_32_pixels",
-                  "block_32_samples", "block_32_cpu_ms", "block_64_pixels", "block_64_samples", "block_64_cpu_ms",
-                  "exposure_ev", "predicted_relmse", "predicted_jod", "gaze.u", "gaze.v", "gaze.valid", "gaze_state",
-                  "gaze_event", "gaze_age_ms", "gaze_effective_age_ms", "no_gaze", "peak_memory_mib"));
+  EXPECT_THAT(
+      timing_columns(),
+      testing::ElementsAre(
+          "frame", "plan_ms", "learn_ms", "pilot_ms", "trace_ms", "guides_ms", "reconstruct_ms", "temporal_ms",
+          "exposure_ms", "layers_ms", "color_ms", "write_ms", "total_ms", "trace_cpu_ms", "pixels", "samples",
+          "pilot_samples", "other_samples", "learning_paths", "rays_primary", "rays_bounce", "rays_shadow",
+          "rejected_rays", "non_finite_samples", "fovea_pixels", "fovea_samples", "fovea_cpu_ms", "intermediate_pixels",
+          "intermediate_samples", "intermediate_cpu_ms", "periphery_pixels", "periphery_samples", "periphery_cpu_ms",
+          "uniform_pixels", "uniform_samples", "uniform_cpu_ms", "block_1_pixels", "block_1_samples", "block_1_cpu_ms",
+          "block_2_pixels", "block_2_samples", "block_2_cpu_ms", "block_4_pixels", "block_4_samples", "block_4_cpu_ms",
+          "block_8_pixels", "block_8_samples", "block_8_cpu_ms", "block_16_pixels", "block_16_samples",
+          "block_16_cpu_ms", "block_32_pixels", "block_32_samples", "block_32_cpu_ms", "block_64_pixels",
+          "block_64_samples", "block_64_cpu_ms", "exposure_ev", "predicted_relmse", "predicted_jod", "gaze.u", "gaze.v",
+          "gaze.valid", "gaze_state", "gaze_event", "gaze_age_ms", "gaze_effective_age_ms", "no_gaze",
+          "peak_memory_mib"));
 }
 
 TEST(Timing, RoundTrip) {
@@ -111,7 +112,7 @@ TEST(Timing, BrokenTables) {
   const std::string header = timing_csv_text({});
   expect_error(path, "", "first line");
   expect_error(path, "frame,ms\n", "timing.csv:1: the columns");
-  expect_error(path, header + "1,2,3\n", "timing.csv:2: 3 columns instead of 68");
+  expect_error(path, header + "1,2,3\n", "timing.csv:2: 3 columns instead of 69");
   std::string letters = timing_csv_text({example(1)});
   letters.replace(letters.find("1234.5000"), 9, "fast");
   expect_error(path, letters, "timing.csv:2: 'fast' is not a number for column trace_ms");

@@ -65,7 +65,7 @@ TEST(GazeTransfer, MustBeChosenWhereTheScreensDiffer) {
       refusal(log, settings_for(kLarge)),
       "gaze.csv: recorded on a display 43.6 deg wide and shown on one 77.3 deg wide; choose with `gaze-transfer`: "
       "fraction keeps positions on the display (angles near its center change by a factor of 2.00), angle keeps "
-      "angles");
+      "angles; or, where the log states its display wrongly, say with `recording-screen` which it was");
   // The same angles at another size are no difference, nor are 1.9 %.
   EXPECT_THAT(
       plan(log, settings_for({.width_px = 640, .height_px = 360, .width_cm = 80, .height_cm = 45, .distance_cm = 100}))
