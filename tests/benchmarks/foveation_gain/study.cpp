@@ -216,8 +216,8 @@ void Study::errors_of_seed(Judge& judge, int seed) {
   }
   // One for all gazes: only foveae are looked at, which hardly ever share a pixel.
   arm(judge, renderer_, kFovealRate, seed, all, [&] {
-    return renderer_.trace(uniform_settings(paper_settings().region_samples[0]), std::nullopt,
-                           seed_of(Seeds::foveal_rate, seed, 0), surfaces_);
+    return renderer_.trace(uniform_settings(std::get<RegionSampling>(paper_settings().sampling).samples[0]),
+                           std::nullopt, seed_of(Seeds::foveal_rate, seed, 0), surfaces_);
   });
 }
 
