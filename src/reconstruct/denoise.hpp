@@ -10,7 +10,7 @@ namespace gazetrace {
 // its samples. What a half has beyond the network's picture of it is right as far as the other half has it as well: the
 // noise of the two is independent, and what the network leaves out is in both. In two bands of coarseness, the finer of
 // which ends at kCoarsePx, the share by which the halves agree around a pixel is given back to it. With many samples
-// the picture so becomes their mean.
+// the picture so becomes their mean, but for single pixels that without_outliers() dims.
 inline constexpr float kSamplesOfBlend = 16;
 inline constexpr int kCoarsePx = 8;
 

@@ -11,8 +11,7 @@
 
 namespace gazetrace {
 
-// All pictures are of the frame's size. Where the radiance of other frames is to be joined, it is irradiance that
-// joins: radiance / (albedo + kAlbedoOffset), times the (joined) albedo + kAlbedoOffset.
+// All pictures are of the frame's size.
 struct DenoiserInput {
   ImageRgb radiance;  // linear Rec.709. Of sites of one pixel the samples' own mean
   ImageRgb albedo;    // 0..1; 0 where nothing is hit
@@ -23,7 +22,6 @@ struct DenoiserInput {
   std::array<ImageRgb, 2> halves;
   bool clean = false;  // albedo and normal have so little noise that the denoiser may believe every pixel of them
 };
-inline constexpr float kAlbedoOffset = 0.02F;
 // Rays of the guides through each pixel: with four, and the samples' own first hits, features are as good to the
 // network as those of 64 samples.
 inline constexpr int kDenoiserGuideRays = 4;
@@ -31,9 +29,9 @@ inline constexpr int kDenoiserGuideRays = 4;
 // `sparse` holds surfaces and first hits (TraceSettings::surfaces), and may hold a first half; `guides` are of the
 // map's size and have kDenoiserGuideRays rays. Albedo and normal are means over these rays and the samples of a site of
 // one pixel; over the samples alone where they see through lens and shutter what the pinhole of the guides sees
-// elsewhere. Sites of several pixels give each of them one
-// light, times its own albedo, so that their mean is that of the samples (denoiser_levels.hpp shows them to the network
-// block by block). Sites without samples show the light of the surfaces around.
+// elsewhere. Sites of several pixels give each of them one light, times its own albedo, so that their mean is that of
+// the samples (denoiser_levels.hpp shows them to the network block by block). Sites without samples show the light of
+// the surfaces around.
 DenoiserInput denoiser_input(const SparseFrame& sparse, const SamplingMap& map, const Guides& guides, int threads);
 
 }  // namespace gazetrace
