@@ -20,7 +20,7 @@ using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::array<std::uint8_t, 8> kSignature{0x89, 'P', 'N', 'G', 13, 10, 26, 10};
 constexpr std::uint32_t kMaxLength = 0x7FFFFFFF;  // of a chunk
-constexpr std::uint32_t kMaxSidePx = 1000000;     // libpng's limit, unless it is told otherwise
+constexpr std::uint32_t kMaxPngSidePx = 1000000;  // libpng's limit, unless it is told otherwise
 constexpr std::uint8_t kPalette = 3;
 
 // `bytes` are those of a chunk, so their number fits zlib's integer.
@@ -130,7 +130,7 @@ class PngCheck {
     }
     const std::uint32_t width = big_endian_u32(chunk.data);
     const std::uint32_t height = big_endian_u32(chunk.data.subspan(4));
-    if (width == 0 || height == 0 || width > kMaxSidePx || height > kMaxSidePx) {
+    if (width == 0 || height == 0 || width > kMaxPngSidePx || height > kMaxPngSidePx) {
       fail("its header says " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
     }
     depth_ = chunk.data[8];

@@ -13,18 +13,18 @@
 namespace gazetrace {
 namespace {
 
-constexpr int kTilePx = 64;
+constexpr int kTileOfSitesPx = 64;
 
 // About 64 pixels, and a multiple of every block size where that is possible.
 int tile_size(const std::vector<LayoutRegion>& regions) {
   int multiple = 1;
   for (const LayoutRegion& region : regions) {
     multiple = std::lcm(multiple, region.block_px);
-    if (multiple > 2 * kTilePx) {
-      return kTilePx;
+    if (multiple > 2 * kTileOfSitesPx) {
+      return kTileOfSitesPx;
     }
   }
-  return multiple > kTilePx ? multiple : kTilePx / multiple * multiple;
+  return multiple > kTileOfSitesPx ? multiple : kTileOfSitesPx / multiple * multiple;
 }
 
 struct Offset {

@@ -13,7 +13,7 @@ constexpr double kMostBounces = 1000;
 constexpr double kWidestCone = 1000;
 constexpr double kMostThreads = 1024;
 
-void add_path_options(JobSchema& schema) {
+void add_light_path_options(JobSchema& schema) {
   schema
       .value("--bounces", trace(&TraceSettings::max_bounces), "N", Touch::tracing,
              "Scattering events on a path; 0 shows emission only")
@@ -68,7 +68,7 @@ void add_texture_options(JobSchema& schema) {
 
 void add_tracing_options(JobSchema& schema) {
   schema.group("Light transport");
-  add_path_options(schema);
+  add_light_path_options(schema);
   add_texture_options(schema);
   schema
       .value("--seed", trace(&TraceSettings::seed), "N", Touch::tracing,

@@ -15,7 +15,7 @@
 namespace gazetrace {
 namespace {
 
-[[noreturn]] void fail(const std::string& place, const std::string& problem) {
+[[noreturn]] void refuse_stream(const std::string& place, const std::string& problem) {
   throw Error(ErrorKind::input, place, problem, "compress the file again");
 }
 
@@ -33,38 +33,39 @@ bool is_stride_allowed(const MeshoptView& packed) {
 void check(const GltfDocument& document, const MeshoptView& packed, const std::string& place) {
   const bool attributes = packed.mode == "ATTRIBUTES";
   if (!attributes && packed.mode != "TRIANGLES" && packed.mode != "INDICES") {
-    fail(place, "mode '" + packed.mode + "' does not exist");
+    refuse_stream(place, "mode '" + packed.mode + "' does not exist");
   }
   const bool filtered = packed.filter != "NONE";
   if (filtered && packed.filter != "OCTAHEDRAL" && packed.filter != "QUATERNION" && packed.filter != "EXPONENTIAL") {
-    fail(place, "filter '" + packed.filter + "' does not exist");
+    refuse_stream(place, "filter '" + packed.filter + "' does not exist");
   }
   if (filtered && !attributes) {
-    fail(place, "filter '" + packed.filter + "' is not for mode " + packed.mode);
+    refuse_stream(place, "filter '" + packed.filter + "' is not for mode " + packed.mode);
   }
   if (!is_stride_allowed(packed)) {
-    fail(place, "a byteStride of " + std::to_string(packed.stride) + " is not allowed for mode " + packed.mode +
-                    " with filter " + packed.filter);
+    refuse_stream(place, "a byteStride of " + std::to_string(packed.stride) + " is not allowed for mode " +
+                             packed.mode + " with filter " + packed.filter);
   }
   if (packed.mode == "TRIANGLES" && packed.count % 3 != 0) {
-    fail(place, "a count of " + std::to_string(packed.count) + " is not a multiple of 3");
+    refuse_stream(place, "a count of " + std::to_string(packed.count) + " is not a multiple of 3");
   }
   const GltfBufferView& view = document.buffer_views[static_cast<std::size_t>(packed.view)];
   if (packed.count * packed.stride != view.length) {  // count < 2^32, stride <= 256
-    fail(place, std::to_string(packed.count) + " elements of " + std::to_string(packed.stride) +
-                    " bytes are not the bufferView's byteLength of " + std::to_string(view.length));
+    refuse_stream(place, std::to_string(packed.count) + " elements of " + std::to_string(packed.stride) +
+                             " bytes are not the bufferView's byteLength of " + std::to_string(view.length));
   }
   const std::uint64_t size = document.buffers[static_cast<std::size_t>(packed.buffer)].size();
   if (packed.offset > size || packed.length > size - packed.offset) {
-    fail(place, "bytes " + std::to_string(packed.offset) + " + " + std::to_string(packed.length) +
-                    " lie outside buffers[" + std::to_string(packed.buffer) + "] of " + std::to_string(size) +
-                    " bytes");
+    refuse_stream(place, "bytes " + std::to_string(packed.offset) + " + " + std::to_string(packed.length) +
+                             " lie outside buffers[" + std::to_string(packed.buffer) + "] of " + std::to_string(size) +
+                             " bytes");
   }
   // The codecs need at least a byte for a triangle or an index, and two bits for 16 equal bytes of attributes. No
   // stream can hold more, so this check keeps a file from asking for memory that it cannot fill.
   const std::uint64_t most = attributes ? packed.length * 64 : packed.length * (packed.mode == "TRIANGLES" ? 3 : 1);
   if ((attributes ? view.length : packed.count) > most) {
-    fail(place, std::to_string(packed.length) + " bytes cannot hold " + std::to_string(packed.count) + " elements");
+    refuse_stream(place,
+                  std::to_string(packed.length) + " bytes cannot hold " + std::to_string(packed.count) + " elements");
   }
 }
 
@@ -80,7 +81,7 @@ std::vector<std::uint8_t> unpack(const GltfDocument& document, const MeshoptView
           ? meshopt_decodeIndexBuffer(plain.data(), packed.count, packed.stride, bytes.data(), bytes.size())
           : meshopt_decodeIndexSequence(plain.data(), packed.count, packed.stride, bytes.data(), bytes.size());
   if (status != 0) {
-    fail(place, "the compressed bytes are damaged");
+    refuse_stream(place, "the compressed bytes are damaged");
   }
   if (packed.filter == "OCTAHEDRAL") {
     meshopt_decodeFilterOct(plain.data(), packed.count, packed.stride);
