@@ -25,7 +25,6 @@ struct SurfaceCell {
   float square = 0;       // mean square of the samples' own light
   float variance = 0;     // of `light`
   float replica = 0;      // of the error of `light`: see SurfaceSums::half_difference
-  float error = 0;        // estimated squared error of `light`, what smoothing took from it included
   SurfaceKind kind = SurfaceKind::diffuse;
 };
 

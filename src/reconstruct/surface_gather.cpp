@@ -29,7 +29,7 @@ template <std::size_t kWidth>
     sums.weight[i] += w;
     sums.variance[i] += w * w * cell.variance;
     sums.replica[i] += w * cell.replica;
-    sums.error[i] += w * cell.error;
+    sums.error[i] += w * cell.variance;
     sums.reflected_r[i] += w * cell.reflected.x;
     sums.reflected_g[i] += w * cell.reflected.y;
     sums.reflected_b[i] += w * cell.reflected.z;

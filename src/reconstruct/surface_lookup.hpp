@@ -25,7 +25,7 @@ struct GatheredLight {
     albedo += w * cell.albedo;
     variance += w * w * cell.variance;
     replica += w * cell.replica;
-    error += w * cell.error;
+    error += w * cell.variance;
     weight += w;
   }
 };

@@ -30,30 +30,6 @@ struct CellLight {
   [[nodiscard]] float replica() const { return reflected_replica / std::max(luminance(albedo), kLeastAlbedo); }
 };
 
-// What one step of smoothing took away from a cell's light, and its noise.
-struct Detail {
-  float light = 0;
-  float variance = 0;  // from that of the light before the step, as if neighbours were independent of each other
-  float replica = 0;
-};
-
-// Of a detail, relative to the light that it belongs to.
-struct Squares {
-  float detail = 0, noise = 0, replica = 0;
-};
-
-// What is added to the light that is smoothed most.
-struct KeptDetail {
-  Vec3f light;
-  float variance = 0, replica = 0, error = 0;
-};
-
-Vec3f light_of(const CellLight& cell) {
-  return {cell.reflected.x / std::max(cell.albedo.x, kLeastAlbedo),
-          cell.reflected.y / std::max(cell.albedo.y, kLeastAlbedo),
-          cell.reflected.z / std::max(cell.albedo.z, kLeastAlbedo)};
-}
-
 // Another surface near by, and its weight by place and orientation, which is the same in both directions.
 struct Tie {
   std::uint32_t other = 0;
@@ -117,18 +93,6 @@ GAZETRACE_CLONES void compare(const Orientation& own, const SmoothingSettings& s
   }
 }
 
-struct TileGrid {
-  int columns = 0, rows = 0;
-};
-TileGrid tile_grid(const SamplingMap& map) {
-  int columns = 0;
-  while (static_cast<std::size_t>(columns) < map.tiles.size() &&
-         map.tiles[static_cast<std::size_t>(columns)].y_px == map.tiles[0].y_px) {
-    ++columns;
-  }
-  return {columns, columns > 0 ? static_cast<int>(map.tiles.size()) / columns : 0};
-}
-
 int levels_of(const MapRegion& region, const SmoothingSettings& settings) {
   const double samples =
       static_cast<double>(region.samples) / static_cast<double>(std::max<std::uint64_t>(region.sites, 1));
@@ -153,10 +117,7 @@ class Smoother {
         samples_(cells.cells.size()),
         total_(cells.cells.size()),
         orientations_(cells.cells.size()),
-        flows_(map.tiles.size()),
-        details_(cells.cells.size()),
-        squares_(cells.cells.size()),
-        kept_(cells.cells.size()) {
+        flows_(map.tiles.size()) {
     for_each_tile([&](std::size_t t) {
       for (std::size_t i = first_cell(t); i < end_cell(t); ++i) {
         const SurfaceCell& cell = cells.cells[i];
@@ -259,11 +220,8 @@ class Smoother {
         smooth.variance = kept * kept * own.variance + sum.variance;
         smooth.reflected_replica = kept * own.reflected_replica + sum.reflected_replica;
         smooth.light = luminance(smooth.reflected) / std::max(luminance(smooth.albedo), kLeastAlbedo);
-        details_[i] = {own.light - smooth.light, taken * taken * own.variance + sum.variance,
-                       own.replica() - smooth.replica()};
       });
     });
-    keep_details(ties);
     lights_.swap(next_);
   }
 
@@ -271,108 +229,16 @@ class Smoother {
     for_each_tile([&](std::size_t t) {
       for (std::size_t i = first_cell(t); i < end_cell(t); ++i) {
         SurfaceCell& cell = lattice_.cells[i];
-        const KeptDetail& kept = kept_[i];
-        const Vec3f reflected = lights_[i].reflected + lights_[i].albedo * kept.light;
-        cell.reflected = {std::max(reflected.x, 0.0F), std::max(reflected.y, 0.0F), std::max(reflected.z, 0.0F)};
+        cell.reflected = lights_[i].reflected;
         cell.albedo = lights_[i].albedo;
-        cell.light = luminance(cell.reflected) / std::max(luminance(cell.albedo), kLeastAlbedo);
-        cell.variance = lights_[i].variance + kept.variance;
-        cell.replica = lights_[i].replica() + kept.replica;
-        cell.error = lights_[i].variance + kept.error;
+        cell.light = lights_[i].light;
+        cell.variance = lights_[i].variance;
+        cell.replica = lights_[i].replica();
       }
     });
   }
 
  private:
-  // Squares of all details, and by how much larger the noise of a tile's details is than `Detail::variance` says.
-  // Stratified samples have less noise than their spread lets expect, and neighbours share some of theirs; the replicas
-  // know both.
-  [[nodiscard]] std::vector<float> measure_details() {
-    struct Noise {
-      double replicas = 0, expected = 0;
-    };
-    std::vector<Noise> noise(map_.tiles.size());
-    for_each_tile([&](std::size_t t) {
-      for (std::size_t i = first_cell(t); i < end_cell(t); ++i) {
-        const Detail& d = details_[i];
-        const float scale = relative_scale(next_[i], d);
-        squares_[i] = {d.light * scale * d.light, d.variance * scale, d.replica * scale * d.replica};
-        noise[t].replicas += static_cast<double>(squares_[i].replica);
-        noise[t].expected += static_cast<double>(squares_[i].noise);
-      }
-    });
-    std::vector<float> scales(map_.tiles.size());
-    const auto [columns, rows] = tile_grid(map_);
-    const auto index = [width = columns](int x, int y) {
-      return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-    };
-    for (int y = 0; y < rows; ++y) {
-      for (int x = 0; x < columns; ++x) {
-        Noise sum;
-        for (int v = std::max(y - 1, 0); v < std::min(y + 2, rows); ++v) {
-          for (int u = std::max(x - 1, 0); u < std::min(x + 2, columns); ++u) {
-            const Noise& near = noise[index(u, v)];
-            sum.replicas += near.replicas;
-            sum.expected += near.expected;
-          }
-        }
-        // Light near the end of float's range has no finite square.
-        const bool is_known = sum.expected > 0 && std::isfinite(sum.replicas / sum.expected);
-        scales[index(x, y)] = is_known ? static_cast<float>(std::clamp(sum.replicas / sum.expected, 0.05, 4.0)) : 1.0F;
-      }
-    }
-    return scales;
-  }
-
-  // Details count in relation to the light that they belong to, so that a bright neighbour does not decide for all.
-  static float relative_scale(const CellLight& smooth, const Detail& detail) {
-    return 1.0F / (smooth.light * smooth.light + detail.variance + 1e-30F);
-  }
-
-  // Wavelet shrinkage: gives back of each detail the share that is signal (a Wiener filter), estimated from the squares
-  // of the details of the same surface near by, less those of their noise and some standard deviations of this
-  // difference.
-  void keep_details(const std::vector<TileTies>& ties) {
-    const std::vector<float> scales = measure_details();
-    for_each_tile([&](std::size_t t) {
-      for_each_cell(ties, t, [&](std::size_t i, const Tie* begin, const Tie* end, std::size_t) {
-        if (begin == end) {
-          return;
-        }
-        double squares = 0;
-        double noise = 0;
-        double replicas = 0;
-        double spread = 0;
-        const auto add = [&](std::size_t j, float like) {
-          const Squares& s = squares_[j];
-          squares += static_cast<double>(like * s.detail);
-          noise += static_cast<double>(like * s.noise);
-          const auto square = static_cast<double>(like * s.replica);
-          replicas += square;
-          spread += square * square;
-        };
-        add(i, kBinomial[0] * kBinomial[0]);
-        for (const Tie* tie = begin; tie != end; ++tie) {
-          add(tie->other, tie->like);
-        }
-        // A rare bright sample is in one of the halves only. Where there is one, the replicas are as large as the
-        // details, while what such samples add to the variance is spread over all cells around.
-        noise = std::max(noise * static_cast<double>(scales[t]), replicas);
-        const double doubt = settings_.detail_doubt * static_cast<double>(doubt_of_few(samples_[i], settings_));
-        const double signal = squares - noise - doubt * std::sqrt(2 * spread);
-        const float share = signal > 0 ? static_cast<float>(signal / squares) : 0.0F;
-        const Detail& d = details_[i];
-        KeptDetail& kept = kept_[i];
-        const float variance = scales[t] * d.variance;
-        kept.light += share * (light_of(lights_[i]) - light_of(next_[i]));
-        kept.variance += share * share * variance;
-        kept.replica += share * d.replica;
-        const float lost = squares > 0 ? static_cast<float>(std::max(1.0 - noise / squares, 0.0)) : 0.0F;
-        kept.error += share * share * variance + (1 - share) * (1 - share) * lost * d.light * d.light;
-      });
-    });
-  }
-
   // Weights by likeness and by light, and their sums.
   void weigh(const std::vector<TileTies>& ties, std::size_t t) {
     flows_[t].resize(ties[t].ties.size());
@@ -449,9 +315,6 @@ class Smoother {
   std::vector<float> samples_, total_;  // of each cell
   std::vector<Orientation> orientations_;
   std::vector<std::vector<float>> flows_;  // of each tile's ties
-  std::vector<Detail> details_;            // of the last step
-  std::vector<Squares> squares_;           // of these details
-  std::vector<KeptDetail> kept_;
 };
 
 }  // namespace

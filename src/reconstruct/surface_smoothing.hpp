@@ -16,11 +16,10 @@ struct SmoothingSettings {
   int fewest_levels = 3;
   double samples = 512;    // wider steps are left out where the squares of 4, 16, 64 ... blocks have as many
   float light_sigmas = 6;  // differences of light up to so many standard deviations are taken for noise
-  // What smoothing takes away is given back where its square is larger than that of its noise, by so many standard
-  // deviations of the estimate of the latter: in the steps of the smoothing, and in what guides leave out.
-  double detail_doubt = 2;
+  // What guides leave out is given back where its square is larger than that of its noise, by so many standard
+  // deviations of the estimate of the latter.
   float residual_doubt = 3;
-  float few_samples = 8;  // with so many samples in a mean both doubts are twice as large: few say little of rare light
+  float few_samples = 8;  // with so many samples in a mean the doubt is twice as large: few say little of rare light
   float most_deviations = 4;  // of a residual's noise, in those of all around; what is beyond is a rare bright sample
   float plane = 0.25F;        // how far off a surface's plane a neighbour may lie, over its distance
 };
@@ -58,9 +57,8 @@ inline float facing_power(float cosine) {
   return like >= kLeastLikeness ? like : 0.0F;
 }
 
-// Where no detail is kept, no light is lost: the sums over all cells of samples times reflected, and times albedo, stay
-// what they are where all blocks are of one size, and nearly so at borders between sizes. Details that are kept come on
-// top, and what would be negative then is cut.
+// No light is lost: the sums over all cells of samples times reflected, and times albedo, stay what they are where all
+// blocks are of one size, and nearly so at borders between sizes.
 void smooth_surfaces(SurfaceCells& cells, const SamplingMap& map, const SmoothingSettings& settings, int threads);
 
 }  // namespace gazetrace
