@@ -13,7 +13,7 @@ stopped goes on; what is left to do is printed before it starts. Rows, interleav
   single        the program's own denoising, frame by frame
   causal        a window of past frames alone
   window        a window on both sides
-  foveated      the last with --sampling regions at the same average of samples
+  foveated      the last with the density acuity at the same average of samples
   cycles        Blender's Cycles (a Python with bpy: --bpy-python), adaptive sampling and OIDN on; --cycles-rates
 
 CPU time of a frame: user and system time of the whole process with 12 frames less that with one frame, over 11, on one
@@ -59,7 +59,7 @@ def options_of(row):
         "single": (["--sampling", "uniform", "--filter", "oidn"], False),
         "causal": (["--sampling", "uniform", "--filter", "oidn", *joined("causal")], False),
         "window": (["--sampling", "uniform", "--filter", "oidn", *joined("window")], False),
-        "foveated": (["--sampling", "regions", "--filter", "oidn", "--gaze-at", "0.5,0.5",
+        "foveated": (["--sampling", "density", "--density", "acuity", "--filter", "oidn", "--gaze-at", "0.5,0.5",
                       "--screen-px", f"{WIDTH},{HEIGHT}", "--screen-ppd", f"{WIDTH / FIELD_DEG:g}", *joined("window")], False),
     }[row]
 
