@@ -30,7 +30,7 @@ void render(const std::string& scene, const std::string& exr, const std::string&
   PathTracer tracer(*resolved.scene, tracer_options(resolved.job.settings));
   const FrameRenderer renderer(tracer, resolved.pipeline);
   for (const FrameRequest& request : resolved.plan.frames) {
-    const RenderedFrame rendered = renderer.render(request, resolved.history);
+    const RenderedFrame rendered = renderer.render(request);
     FrameHeader header;
     header.frame = request.frame;
     header.camera = request.camera;

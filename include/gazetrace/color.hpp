@@ -9,7 +9,6 @@
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/image.hpp"
-#include "gazetrace/temporal.hpp"
 
 namespace gazetrace {
 
@@ -17,15 +16,13 @@ enum class ExposureMode { fixed, log_average };
 
 struct ExposureSettings {
   ExposureMode mode = ExposureMode::fixed;
-  double ev = 0;           // stops; fixed: the exposure; log_average: added to the measured exposure
-  double key = 0.18;       // log_average: the luminance that the log-average is brought to (Reinhard 2002, eq. 1-2)
-  double smoothing_s = 0;  // time constant of the exponential smoothing over video time; 0: off
+  double ev = 0;      // stops; fixed: the exposure; log_average: added to the measured exposure
+  double key = 0.18;  // log_average: the luminance that the log-average is brought to (Reinhard 2002, eq. 1-2)
 };
 
 // The exposure of a frame in stops. The log-average is taken over the means of blocks of at least 16 x 16 pixels, since
-// over the pixels of a noisy frame it would be biased low. Smoothing keeps its state in `history`.
-double choose_exposure_ev(const ImageRgb& radiance, std::int64_t t_video_ns, const ExposureSettings& settings,
-                          TemporalHistory& history);
+// over the pixels of a noisy frame it would be biased low.
+double choose_exposure_ev(const ImageRgb& radiance, const ExposureSettings& settings);
 
 struct ColorSettings {
   std::string config;   // OCIO config file; empty: that of $OCIO; neither: the built-in one

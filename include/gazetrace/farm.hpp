@@ -43,15 +43,10 @@ enum class FarmKind : std::uint8_t { frames, sweep };
 struct FarmPlan {
   FarmKind kind = FarmKind::frames;
   std::string name, engine, program, container, job_file;
-  std::string folder;       // of the farm: `farm` in that of the run, absolute like the other paths
-  std::string run_folder;   // where the outputs lie
-  std::string run_name;     // what the run's own files there begin with, run_name_of() without the folder
-  std::string work_folder;  // where the tasks are started, since paths in the job count from there
-  // Frames depend on those before them: tasks trace (SequenceStage::trace), and one run finishes. Otherwise tasks
-  // render and `merge` joins.
-  bool traces_first = false;
-  // Where the run that finishes keeps its history, so that one which is interrupted does not begin again.
-  std::string checkpoint;
+  std::string folder;                // of the farm: `farm` in that of the run, absolute like the other paths
+  std::string run_folder;            // where the outputs lie
+  std::string run_name;              // what the run's own files there begin with, run_name_of() without the folder
+  std::string work_folder;           // where the tasks are started, since paths in the job count from there
   std::vector<std::string> chunks;   // the frames of each; of a sweep, its rows
   std::vector<double> samples;       // that the plan expects of each; 0: not known
   std::int32_t files_per_frame = 1;  // of what the whole sequence has
@@ -94,7 +89,7 @@ struct TaskStatus {
 };
 struct FarmStatus {
   std::vector<TaskStatus> tasks;            // as farm_tasks()
-  std::size_t frames = 0, frames_done = 0;  // pictures of the sequence; of a farm that traces first, traced frames
+  std::size_t frames = 0, frames_done = 0;  // pictures of the sequence
   [[nodiscard]] bool is_done() const;
 };
 // How finished files are looked at: their sizes alone, or their content, which reads all of them.

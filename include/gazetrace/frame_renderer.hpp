@@ -47,10 +47,6 @@ struct FrameSettings {
   int threads = 0;  // 0: all
 };
 
-// A frame depends on what became of those before it. That it reads the samples of other frames (AccumulateMode::window)
-// is no history: it has the same bits whichever frames are rendered beside it.
-bool uses_history(const FrameSettings& settings);
-
 // Wall time of the stages, ms.
 struct StageTimes {
   double plan_ms = 0;         // the sampling map
@@ -117,33 +113,31 @@ class FrameRenderer {
   [[nodiscard]] const FrameSettings& settings() const { return settings_; }
 
   // map -> trace -> guides, where the filter needs them -> reconstruct -> exposure.
-  // A function of its arguments: without history (uses_history) a frame has the same bits alone and in a sequence.
-  // `history` is that of the frames before, and then that of this frame as well; it begins empty. No
-  // other frame is read, whatever AccumulateSettings say.
-  [[nodiscard]] RenderedFrame render(const FrameRequest& request, TemporalHistory& history) const;
+  // A function of its arguments: a frame has the same bits alone and in a sequence. No other frame is read, whatever
+  // AccumulateSettings say.
+  [[nodiscard]] RenderedFrame render(const FrameRequest& request) const;
   // With `known`, which saves time and changes no picture. It begins empty, and is then that of this frame.
-  [[nodiscard]] RenderedFrame render(const FrameRequest& request, TemporalHistory& history, KnownLight& known) const;
+  [[nodiscard]] RenderedFrame render(const FrameRequest& request, KnownLight& known) const;
 
   // Whether nothing moves between two frames: they see the same, and differ by their samples alone.
   [[nodiscard]] bool at_rest(const FrameRequest& a, const FrameRequest& b) const;
 
-  // The first two stages alone. With TraceSettings::samples their sums are what can be joined with other parts'.
+  // The first two stages alone.
   [[nodiscard]] TracedFrame trace(const FrameRequest& request) const;
   [[nodiscard]] TracedFrame trace(const FrameRequest& request, KnownLight& known) const;
-  // All stages after them: render() is finish(request, trace(request), history), in one process or in two.
-  [[nodiscard]] RenderedFrame finish(const FrameRequest& request, TracedFrame traced, TemporalHistory& history) const;
+  // All stages after them: render() is finish(request, trace(request)).
+  [[nodiscard]] RenderedFrame finish(const FrameRequest& request, TracedFrame traced) const;
 
   // The first stages of a frame that others read (AccumulateMode::window), and all stages after them for one of a
   // window's frames, which are in order: only its own samples and times are counted. Whether this frame has neighbours
   // on both sides is the caller's choice; JoinedFrames chooses them by AccumulateSettings.
   [[nodiscard]] WindowFrame window_frame(const FrameRequest& request, KnownLight& known) const;
-  [[nodiscard]] RenderedFrame finish(const std::vector<const WindowFrame*>& window, std::size_t own,
-                                     TemporalHistory& history) const;
+  [[nodiscard]] RenderedFrame finish(const std::vector<const WindowFrame*>& window, std::size_t own) const;
 
  private:
   // All stages after the samples. What the picture shows is in `shown`; counts and times are those of `own`.
   [[nodiscard]] RenderedFrame finish_with(const FrameRequest& request, const SamplingMap& map, const SparseFrame& shown,
-                                          TracedFrame own, TemporalHistory& history) const;
+                                          TracedFrame own) const;
   // Whether `known` is what the frame would learn of its light: its own, or that of a frame at rest with it.
   [[nodiscard]] bool knows_light(const KnownLight& known, const FrameRequest& request) const;
   // Adds the paths that it takes to `stats`.

@@ -97,7 +97,6 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   std::optional<FrameList> frames;
   DurationNs start;
   std::optional<Chunk> chunk;
-  SequenceStage stage = SequenceStage::whole;
 
   // How it is rendered
   SamplingSettings foveation;
@@ -105,14 +104,11 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   std::string filter = "auto";    // filter_of() says which filter that is
   AccumulateSettings accumulate;  // how many frames are read follows from the times below
   DurationNs accumulate_past{250'000'000}, accumulate_future{250'000'000};
-  std::string checkpoint, resume_from;
-  std::int32_t checkpoint_every = 0, preroll = 0;
   std::optional<PixelIndex> only_pixel;
   int threads = 0;
 
   // Exposure, colour, files
   ExposureSettings exposure;
-  DurationNs exposure_smoothing;
   ColorSettings color;
   std::vector<std::string> outputs;
   ExrSettings exr;

@@ -44,7 +44,7 @@ enum class Touch : std::uint16_t {
   sampling = 1U << 6U,  // how samples are distributed; a uniform frame ignores it
   tracing = 1U << 7U,   // how a path is traced
   filter = 1U << 8U,    // how pixels are reconstructed from samples
-  history = 1U << 9U,   // what a frame takes from those before it
+  window = 1U << 9U,    // what a frame takes from those around it
   color = 1U << 10U,    // exposure and view
   output = 1U << 11U,   // files
   speed = 1U << 12U,    // how fast it goes, and nothing else

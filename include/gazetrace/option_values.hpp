@@ -157,7 +157,6 @@ GAZETRACE_ENUM_NAMES(PixelFilter, "pixel filter", {E::box, "box"}, {E::blackman_
 GAZETRACE_ENUM_NAMES(AccumulateMode, "accumulation", {E::off, "off"}, {E::window, "window"})
 GAZETRACE_ENUM_NAMES(ExrPixels, "EXR pixel type", {E::half, "half"}, {E::float32, "float"})
 GAZETRACE_ENUM_NAMES(ExrParts, "parts of an EXR", {E::single, "single"}, {E::multi, "multi"})
-GAZETRACE_ENUM_NAMES(SequenceStage, "stage", {E::whole, "whole"}, {E::trace, "trace"}, {E::finish, "finish"})
 #undef GAZETRACE_ENUM_NAMES
 
 template <class E>

@@ -114,7 +114,6 @@ struct FrameHeader {
   std::string settings_digest;   // hex
   std::string mean_digest;       // PipelineSettings::mean_digest; empty: no mean is to be taken of this picture
   double samples_per_pixel = 0;  // where every pixel has as many; 0: they differ
-  std::string history;           // history_text() of the frames behind this one; empty: it depends on no other
   std::string software;          // "gazetrace 0.1.0"
 };
 
@@ -138,13 +137,10 @@ ImageRgb read_exr_rgb(const std::string& path);
 struct FrameStamp {
   std::string settings_digest;
   std::optional<std::int32_t> frame;  // empty: not stated
-  std::string history;                // as in FrameHeader
   std::optional<double> exposure_ev;
 };
 FrameStamp read_frame_stamp(const std::string& path);
 std::string read_settings_digest(const std::string& path);
-// The frames that went into a frame's history, as its header states them: "1-30", a digest of a long list, or "none".
-std::string history_text(const std::vector<std::int32_t>& passed);
 // One digest, in hex, of everything that can change pixels, given as (name, value) pairs in a fixed order.
 std::string digest_settings(const std::vector<std::pair<std::string, std::string>>& settings);
 
@@ -183,15 +179,6 @@ std::string timing_csv_text(const std::vector<TimingRow>& rows);  // header and 
 // Error(input) with file:line. A last line without its line break is what a killed run leaves behind; it is skipped.
 std::vector<TimingRow> read_timing_csv(const std::string& path);
 
-// For runs whose frames depend on those before them: what merging needs to know about the history that a part had.
-struct RecordedHistory {
-  std::string settings_digest;  // the run's digest without its frames and history; empty: no frame depends on another
-  std::string frames;           // list of the frames whose history its first written frame had; empty: none
-  std::string checkpoint;       // the file that the history came from; empty: none
-
-  friend bool operator==(const RecordedHistory&, const RecordedHistory&) = default;
-};
-
 // Everything that is needed to repeat a run; stored as JSON.
 struct RunRecord {
   std::string version, build, instruction_set, ray_library;
@@ -199,17 +186,15 @@ struct RunRecord {
   std::vector<std::string> command_line;
   std::string config_toml;  // every option with its effective value
   std::string settings_digest;
-  std::vector<std::string> part_digests;  // of a merged run: the digests in its parts' pictures, where they differ
-  RecordedHistory history;
+  std::vector<std::string> part_digests;             // of a mean: the digests in the pictures that it is made of
   std::map<std::string, std::string> input_digests;  // path -> content hash
   std::string frames;                                // a frame list, see format_frame_list()
   bool is_part = false;                              // a part of a longer sequence
-  std::string stage;                         // "trace": its files are traced frames (save_traced()); empty: pictures
   std::string chunk_file;                    // the ChunkFile that its frames come from, in its folder; empty: none
   std::map<std::string, std::string> facts;  // load_s, bvh_mib, peak_memory_mib, view, working_space, ...
   Warnings warnings;
   std::vector<BadSample> bad_samples;
-  WrittenFiles files;  // pictures, maps and traced frames, as they were written
+  WrittenFiles files;  // pictures and maps, as they were written
 };
 std::string run_record_json(const RunRecord& record);
 RunRecord read_run_record(const std::string& path);  // Error(input)
@@ -223,9 +208,6 @@ std::string folder_of_run(const std::string& run_name);
 // NAME timing.csv and so on, which were the names of every sequence before version 1.
 std::string timing_file_name(const std::string& run_name, const std::string& frames, bool is_part);
 std::string run_record_file_name(const std::string& run_name, const std::string& frames, bool is_part);
-
-// The file of a frame that was traced and not yet reconstructed: NAME.traced.0001.sparse
-std::string traced_file_name(const std::string& run_name, std::int32_t frame);
 
 // How the frames of a sequence were divided among the tasks of an array job. The first task that comes writes it down
 // beside the outputs, and it is never replaced: so all tasks have the same borders, and a chunk that never began is
@@ -283,10 +265,8 @@ struct MergeResult {
 };
 // Joins the parts of a sequence, see read_run_parts(), into its timing and record. Error(input) where the settings
 // digests of parts differ, where parts overlap, where files are not those that the parts wrote, and where frames are
-// missing (unless allowed); Error(usage) where timing or record exist and may not be overwritten. Where frames depend
-// on those before them, each part must have had the history of all frames before it, for instance from another part's
-// checkpoint; a history of only the last few frames (`preroll`) gives a warning. Error(runtime) where a run or another
-// merge is writing timing or record.
+// missing (unless allowed); Error(usage) where timing or record exist and may not be overwritten. Error(runtime) where
+// a run or another merge is writing timing or record.
 MergeResult merge_runs(const std::string& where, const MergeOptions& options = {});
 
 // Makes the folder of an output where it is missing. Error(input) where the file exists and may not be replaced, and

@@ -25,7 +25,7 @@ using FilesByFolder = std::map<std::string, std::vector<std::string>>;
 // A run's claim to the files that it writes. The kernel holds it for as long as the object lives, and no longer than
 // the process: a run that was killed holds up nobody, and one that is stopped keeps its claim however long that takes.
 //
-// The claim is on a file `.gazetrace.lock` in each folder that frames, maps, checkpoint and record go to. Each name of
+// The claim is on a file `.gazetrace.lock` in each folder that frames, maps and record go to. Each name of
 // a file stands for one position in it, which is locked, so that runs of other frames or other pictures share a
 // folder, however the folder and the pattern of the names are spelled. A pattern with the frame's number in a folder's
 // name is claimed in the folder above, where a run that names such a folder itself looks, too. Of more than 2000

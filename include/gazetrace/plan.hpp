@@ -72,7 +72,7 @@ struct NeighborView {
   std::int64_t t_video_ns = 0;
 };
 
-// Everything about one frame: it can be rendered from this and the scene alone, apart from temporal history.
+// Everything about one frame: it can be rendered from this and the scene alone, apart from a window's other frames.
 struct FrameRequest {
   std::int32_t frame = 1;
   std::int64_t t_video_ns = 0;  // the middle of the frame: start + (frame - 1/2) / fps, rounded down to a nanosecond
@@ -138,11 +138,6 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
 
 // Whether there is such a frame: it is 1 or later, and the camera's path covers it.
 bool has_frame(const CameraPath& camera, const PlanSettings& settings, std::int64_t frame);
-
-// For a plan that goes on where another run ended: enters what the eye has done since `frame_before`, the last frame of
-// that run. By itself plan_frames() assumes that the frame before its first one is as far away as the next one. `log`
-// and `settings` are those that the plan was made of.
-void join_plan(FramePlan& plan, std::int32_t frame_before, const GazeLog& log, const PlanSettings& settings);
 
 // One line: "50.0 ms in the median, mean 50.1, ...".
 std::string gaze_ages_text(const GazeAges& ages);

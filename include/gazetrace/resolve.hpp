@@ -4,8 +4,7 @@
 //   const Job job = load_job("job.toml");
 //   ResolvedJob resolved = resolve(job);
 //   PathTracer tracer(*resolved.scene, tracer_options(resolved.job.settings));
-//   render_sequence(tracer, resolved.plan, ColorPipeline(resolved.job.settings.color), resolved.pipeline, {},
-//                   std::move(resolved.history));
+//   render_sequence(tracer, resolved.plan, ColorPipeline(resolved.job.settings.color), resolved.pipeline, {});
 #pragma once
 
 #include <cstddef>
@@ -36,12 +35,9 @@ enum class ResolveScope {
   plan,
   // The plan and the digests of all files, for work on pictures that were rendered already.
   digests,
-  // Everything that a rendering needs: the scene with its environment, the digests, and the history that it begins
-  // with.
+  // Everything that a rendering needs: the scene with its environment, and the digests.
   render,
 };
-
-struct ResolvedJob;
 
 struct ResolveOptions {
   ResolveScope scope = ResolveScope::render;
@@ -51,9 +47,6 @@ struct ResolveOptions {
   const Scene* loaded = nullptr;
   // Whether the warnings include options that have no effect.
   bool tell_idle = true;
-  // With the scope render: called when all is known but the history, before anything is read that another run of the
-  // job may be writing.
-  std::function<void(ResolvedJob& resolved)> claim;
 };
 
 // What the tasks of an array job share: how the frames are divided (ChunkFile), for the first task to write down.
@@ -68,11 +61,10 @@ struct ResolvedJob {
   std::optional<GazeLog> gaze;            // without times of day, unless the job keeps them
   std::optional<ProcessedGaze> steering;  // the gaze after the steps of `gaze-process`
   PlanSettings plan_settings;
-  FramePlan plan;                                    // with the frames of `preroll` at its beginning
+  FramePlan plan;
   std::vector<std::int32_t> frames;                  // those that are wanted
   ChunkBorders chunk_borders;                        // prepare_outputs() writes them once
   PipelineSettings pipeline;                         // with its digest, from the scope `digests` on
-  TemporalHistory history;                           // what the first frame starts from; with the scope render
   std::map<std::string, std::string> input_digests;  // path -> content hash
   // What was decided where the settings left a choice, such as "environment" -> "the built-in sky, ...", and which
   // settings were replaced by others.

@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames over time: what a frame takes from those around it, and the little that outlives a frame.
+// Frames over time: what a frame takes from those around it.
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <vector>
 
 namespace gazetrace {
-
-// All state that outlives a frame and reaches into later pictures. It is passed as an argument and never global.
-struct TemporalHistory {
-  std::vector<std::int32_t> passed;   // numbers of the frames that went into it, in their order
-  std::optional<double> smoothed_ev;  // exposure smoothing
-  std::int64_t smoothed_ev_t_ns = 0;
-};
 
 // off: every frame stands for itself. window: a frame is reconstructed from its own samples and from those of the
 // frames around it, joined where they saw the same places (src/temporal/join_window.hpp). Nothing is accumulated from

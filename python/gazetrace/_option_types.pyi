@@ -126,10 +126,6 @@ class JobOptions(TypedDict, total=False):
     accumulate: Value | None
     accumulate_past: Value | None
     accumulate_future: Value | None
-    checkpoint: Value | None
-    checkpoint_every: Value | None
-    resume_from: Value | None
-    preroll: Value | None
     bounces: Value | None
     russian_roulette: bool | None
     diffuse: Value | None
@@ -143,7 +139,6 @@ class JobOptions(TypedDict, total=False):
     only_pixel: Value | Sequence[Value] | None
     exposure: Value | None
     exposure_key: Value | None
-    exposure_smoothing: Value | None
     ocio: Value | None
     ocio_input: Value | None
     display: Value | None
@@ -155,7 +150,6 @@ class JobOptions(TypedDict, total=False):
     confine: bool | None
     max_memory: Value | None
     chunk: Value | None
-    stage: Value | None
     trust_files: bool | None
     grace: Value | None
     max_time: Value | None

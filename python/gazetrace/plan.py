@@ -21,13 +21,8 @@ class Plan:
 
     def __init__(self, planned):
         self._core = planned
-        wanted = set(planned.frames())
-        self._rows = []  # of the wanted frames among those of the library's plan, which begins with the preroll
-        items = []
-        for row, item in enumerate(json.loads(planned.json())["frames"]):
-            if item["frame"] in wanted:
-                self._rows.append(row)
-                items.append(flattened(item))
+        items = [flattened(item) for item in json.loads(planned.json())["frames"]]
+        self._rows = list(range(len(items)))
         self.columns = columns_of(items)
         self._samples = None
 

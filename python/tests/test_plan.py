@@ -30,10 +30,6 @@ class PlanTest(TestCase):
         self.assertTrue((sampling.samples_per_pixel == 4).all())
         self.assertEqual(int(sampling.sites["samples"].sum()), sampling.samples)
 
-    def test_preroll_is_no_row(self):
-        plan = small_job(frames="5-6", preroll=3, exposure="auto", exposure_smoothing="0.5s").plan()
-        np.testing.assert_array_equal(plan.frame, [5, 6])
-
     def test_a_wrong_file_is_refused(self):
         self.assertSays("none.csv", "input", small_job(gaze_at=None, gaze="none.csv").plan)
 

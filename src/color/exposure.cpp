@@ -62,30 +62,12 @@ std::optional<double> log_average_luminance(const ImageRgb& radiance) {
 
 }  // namespace
 
-double choose_exposure_ev(const ImageRgb& radiance, std::int64_t t_video_ns, const ExposureSettings& settings,
-                          TemporalHistory& history) {
+double choose_exposure_ev(const ImageRgb& radiance, const ExposureSettings& settings) {
   if (settings.mode == ExposureMode::fixed || radiance.empty()) {
     return settings.ev;
   }
   const std::optional<double> luminance = log_average_luminance(radiance);
-  const bool smoothed = settings.smoothing_s > 0;
-  if (!luminance) {
-    // A black frame says nothing about exposure, so the smoothed one is kept.
-    return settings.ev + (smoothed ? history.smoothed_ev.value_or(0.0) : 0.0);
-  }
-  double measured_ev = std::log2(settings.key / *luminance);
-  if (smoothed) {
-    // Exponential smoothing, with the exact step response for unequal frame times. Where time does not advance, it
-    // starts anew.
-    if (history.smoothed_ev && t_video_ns > history.smoothed_ev_t_ns) {
-      const double elapsed_s = static_cast<double>(t_video_ns - history.smoothed_ev_t_ns) * 1e-9;
-      const double weight = -std::expm1(-elapsed_s / settings.smoothing_s);
-      measured_ev = *history.smoothed_ev + weight * (measured_ev - *history.smoothed_ev);
-    }
-    history.smoothed_ev = measured_ev;
-    history.smoothed_ev_t_ns = t_video_ns;
-  }
-  return settings.ev + measured_ev;
+  return luminance ? settings.ev + std::log2(settings.key / *luminance) : settings.ev;
 }
 
 }  // namespace gazetrace

@@ -39,9 +39,7 @@ std::string shell_word(const std::string& text);
 std::string chunk_list(const std::vector<std::size_t>& chunks);
 // The names of the tasks that follow the chunks, in their order: each waits for the one before.
 std::vector<std::string> tasks_after_chunks(const FarmPlan& plan);
-// The limit of time of a task that follows the chunks, in seconds; 0: none. The run that finishes traced frames does
-// with all of them what a chunk does with some, and goes on where it was interrupted: all its tries together have the
-// time of all chunks one after the other. Others have an hour at least.
+// The limit of time of a task that follows the chunks, in seconds; 0: none. It is an hour at least.
 std::int64_t time_after_chunks_s(const FarmPlan& plan);
 // Nobody else runs tasks of the farm as processes, or writes its files, while it is held. Error(runtime) where somebody
 // does.

@@ -86,9 +86,7 @@ std::int64_t time_after_chunks_s(const FarmPlan& plan) {
   if (plan.time_s == 0) {
     return 0;
   }
-  const auto chunks = static_cast<std::int64_t>(plan.chunks.size());
-  const std::int64_t tries = std::int64_t{plan.retries} + 1;
-  return std::max(plan.traces_first ? plan.time_s * ((chunks + tries - 1) / tries) : plan.time_s, kLeast_s);
+  return std::max(plan.time_s, kLeast_s);
 }
 
 std::string task_script_path(const FarmPlan& plan) {

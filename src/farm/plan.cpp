@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr double kReserveOfMemory = 1.25;  // over what is predicted
 constexpr std::uint64_t kProgramMib = 256;
-// What a run holds of a frame while it renders: sums, guides, the picture, its view and history, with copies of some.
+// What a run holds of a frame while it renders: sums, guides, the picture, and its view, with copies of some.
 constexpr std::uint64_t kBytesOfAPixel = 600;
 // By the filter oidn: 1050 bytes, and 2520 where halves go through the network, too (1280x720 with Open Image Denoise
 // 2.5.1).
@@ -154,7 +154,7 @@ FarmPlan plan_farm(const FarmSettings& settings) {
     throw Error(ErrorKind::usage, "`output`", "is where a sweep is measured; a job names its outputs itself",
                 "leave it out");
   }
-  Job job = load_job(settings.job_file, settings.confine);
+  const Job job = load_job(settings.job_file, settings.confine);
   check_render_job(settings, job.settings);
   ResolveOptions options;
   options.scope = ResolveScope::plan;
@@ -164,13 +164,6 @@ FarmPlan plan_farm(const FarmSettings& settings) {
   const std::string& run_name = resolved.pipeline.output.run_name;
   FarmPlan plan = farm_plan_of(settings, folder_of_run(run_name));
   plan.run_name = fs::path(run_name).filename().string();
-  plan.traces_first = uses_history(resolved.pipeline) && resolved.job.settings.preroll == 0;
-  if (plan.traces_first) {
-    job.settings.stage = SequenceStage::trace;
-    check_job(job);
-    plan.checkpoint =
-        job.settings.checkpoint.empty() ? (fs::path(plan.folder) / "history").string() : job.settings.checkpoint;
-  }
   JobSettings divided = resolved.job.settings;
   // No chunk is empty: their number is all that the tasks are told.
   divided.chunk = Chunk{1, std::min(settings.chunks, static_cast<std::uint32_t>(resolved.plan.frames.size()))};

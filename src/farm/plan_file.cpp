@@ -30,8 +30,6 @@ void each_member(Plan& plan, const Visit& visit) {
   visit("run_folder", plan.run_folder);
   visit("run_name", plan.run_name);
   visit("work_folder", plan.work_folder);
-  visit("traces_first", plan.traces_first);
-  visit("checkpoint", plan.checkpoint);
   visit("chunks", plan.chunks);
   visit("samples", plan.samples);
   visit("files_per_frame", plan.files_per_frame);

@@ -31,11 +31,7 @@ std::string farm_plan_text(const FarmPlan& plan) {
   text += fmt::format("each task: {}{}{}\n", plan.threads > 0 ? fmt::format("{} threads, ", plan.threads) : "",
                       plan.memory_mib > 0 ? fmt::format("{} MiB", plan.memory_mib) : "memory not stated",
                       plan.time_s > 0 ? fmt::format(", at most {} min", (plan.time_s + 59) / 60) : "");
-  if (plan.traces_first) {
-    text += "frames depend on those before them: the tasks trace, and one run finishes all frames in order\n";
-  }
-  return text + fmt::format("then: {}", plan.traces_first ? "finish" : "merge") +
-         (plan.then.empty() ? "" : fmt::format("; {}", fmt::join(plan.then, "; "))) + "\n";
+  return text + "then: merge" + (plan.then.empty() ? "" : fmt::format("; {}", fmt::join(plan.then, "; "))) + "\n";
 }
 
 }  // namespace gazetrace

@@ -155,7 +155,7 @@ TaskStatus observe_chunk(const FarmPlan& plan, std::size_t chunk, FileCheck chec
   const std::string name = std::to_string(chunk + 1);
   const std::string& frames = plan.chunks[chunk];
   if (plan.kind == FarmKind::frames) {
-    return observe_run(plan, name, frames, {frames, true, plan.traces_first ? 1 : plan.files_per_frame}, check);
+    return observe_run(plan, name, frames, {frames, true, plan.files_per_frame}, check);
   }
   TaskStatus task = observe_exit(plan, name);
   task.frames = frames;
@@ -175,17 +175,13 @@ std::string all_frames(const FarmPlan& plan) {
   return format_frame_list(frames);
 }
 
-// The run that finishes traced frames leaves a record, as every run does. Of a merge there are its exit code and what
-// it has written.
+// Of a merge there are its exit code and what it has written.
 TaskStatus observe_finish(const FarmPlan& plan, FileCheck check) {
   if (plan.kind == FarmKind::sweep) {
     return observe_exit(plan, "finish");
   }
   const std::string frames = all_frames(plan);
   const Outputs whole{frames, false, plan.files_per_frame};
-  if (plan.traces_first) {
-    return observe_run(plan, "finish", frames, whole, check);
-  }
   TaskStatus merged;
   merged.frames = frames;
   TaskStatus task = observe_exit(plan, "finish");
@@ -194,15 +190,6 @@ TaskStatus observe_finish(const FarmPlan& plan, FileCheck check) {
     task.exit_code.reset();
   }
   return task;
-}
-
-// Traced frames may be removed once their pictures are there.
-void count_as_traced(FarmStatus& status) {
-  for (TaskStatus& task : status.tasks) {
-    task.done = task.all;
-    task.state = TaskState::done;
-  }
-  status.frames_done = status.frames;
 }
 
 // What follows the chunks has to be done again where something before it is not done any more.
@@ -245,15 +232,11 @@ bool FarmStatus::is_done() const {
 FarmStatus farm_status(const FarmPlan& plan, FileCheck check) {
   FarmStatus status;
   const TaskStatus finish = observe_finish(plan, check);
-  const bool needs_traced = !plan.traces_first || finish.state != TaskState::done;
   for (std::size_t i = 0; i < plan.chunks.size(); ++i) {
-    const TaskStatus task = observe_chunk(plan, i, needs_traced ? check : FileCheck::size);
+    const TaskStatus task = observe_chunk(plan, i, check);
     status.frames += task.all;
     status.frames_done += task.done;
     status.tasks.push_back(task);
-  }
-  if (!needs_traced) {
-    count_as_traced(status);
   }
   status.tasks.push_back(finish);
   for (std::size_t i = 1; i <= plan.then.size(); ++i) {
@@ -285,8 +268,7 @@ std::string farm_status_text(const FarmPlan& plan, const FarmStatus& status) {
   if (plan.kind == FarmKind::sweep) {
     return text;
   }
-  return text + fmt::format("{} of {} frames are {}\n", status.frames_done, status.frames,
-                            plan.traces_first ? "traced" : "rendered");
+  return text + fmt::format("{} of {} frames are rendered\n", status.frames_done, status.frames);
 }
 
 std::string farm_status_json(const FarmPlan& plan, const FarmStatus& status) {
@@ -306,7 +288,6 @@ std::string farm_status_json(const FarmPlan& plan, const FarmStatus& status) {
   }
   Json json{{"folder", plan.folder},
             {"engine", plan.engine},
-            {"traces_first", plan.traces_first},
             {"is_done", status.is_done()},
             {"frames", status.frames},
             {"frames_done", status.frames_done},

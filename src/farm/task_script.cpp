@@ -14,9 +14,6 @@ namespace {
 // Seconds between the end of a run by `max-time` and the engine's own limit.
 constexpr std::int64_t kReserve_s = 60;
 
-// So many frames are filtered and accumulated once more, at most, when the run that finishes is killed.
-constexpr int kCheckpointEvery = 50;
-
 constexpr const char* kBeginning = R"(#!/bin/sh
 # Runs tasks of the farm in this folder: task.sh 3, task.sh 3-5,8, task.sh finish, task.sh after-1.
 # Exit codes are those of gazetrace: 2 will fail again, 3 may be worth another try, 4 was interrupted and goes on.
@@ -101,12 +98,7 @@ std::string finish_words(const FarmPlan& plan) {
     return fmt::format("{} sweep merge {} -o {}{}", program_words(plan), shell_word(plan.job_file),
                        shell_word(plan.run_folder), plan.confine ? " --confine" : "");
   }
-  if (!plan.traces_first) {
-    return fmt::format("{} merge {} --overwrite", program_words(plan), shell_word(pattern_of(run_name_of(plan))));
-  }
-  return fmt::format("{} render --config {} --stage finish --resume --checkpoint {} --checkpoint-every {}{}",
-                     program_words(plan), shell_word(plan.job_file), shell_word(plan.checkpoint), kCheckpointEvery,
-                     limits(plan, time_after_chunks_s(plan)));
+  return fmt::format("{} merge {} --overwrite", program_words(plan), shell_word(pattern_of(run_name_of(plan))));
 }
 
 // What runs chunk $1.
@@ -117,8 +109,7 @@ std::string chunk_words(const FarmPlan& plan) {
   if (plan.kind == FarmKind::sweep) {
     return fmt::format("  run \"$1\" {} sweep {} -o {} {}\n", program, job, shell_word(plan.run_folder), chunk);
   }
-  return fmt::format("  run \"$1\" {} render --config {} --resume{} {}\n", program, job,
-                     plan.traces_first ? " --stage trace" : "", chunk);
+  return fmt::format("  run \"$1\" {} render --config {} --resume {}\n", program, job, chunk);
 }
 
 }  // namespace

@@ -64,9 +64,6 @@ std::string changed_since(const std::string& record_path, const ResolvedJob& now
     if (before.version != kVersion) {
       changes.push_back(fmt::format("version {} made them, this is {}", before.version, kVersion));
     }
-    if (changes.empty() && before.settings_digest == now.pipeline.settings_digest && uses_history(now.pipeline)) {
-      changes.emplace_back("other frames came before them");
-    }
   } catch (const Error&) {
     changes.clear();
   }
@@ -80,7 +77,7 @@ std::string changed_since(const std::string& record_path, const ResolvedJob& now
 }
 
 void refuse_to_lose_frames(const ResolvedJob& resolved, const std::string& record_path) {
-  const std::vector<std::int32_t> lost = frames_of_others(resolved.plan, resolved.pipeline, resolved.history);
+  const std::vector<std::int32_t> lost = frames_of_others(resolved.plan, resolved.pipeline);
   if (lost.empty()) {
     return;
   }

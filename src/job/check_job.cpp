@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <system_error>
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/foveation.hpp"
@@ -18,8 +16,6 @@
 
 namespace gazetrace {
 namespace {
-
-namespace fs = std::filesystem;
 
 // Farther beside the screen than this nobody looks: such numbers are pixels that were taken for fractions.
 constexpr double kMaxGazeScreens = 3;
@@ -39,30 +35,6 @@ void check_ranges(const JobSettings& job, const JobSchema& schema) {
                     option.range->remedy);
       }
     }
-  }
-}
-
-void check_history_options(const JobSettings& job) {
-  PipelineSettings history;
-  history.exposure = job.exposure;
-  history.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
-  for (const auto& [option, given] :
-       {std::pair("`checkpoint`", !job.checkpoint.empty()), std::pair("`resume-from`", !job.resume_from.empty()),
-        std::pair("`preroll`", job.preroll > 0)}) {
-    if (given && !uses_history(history)) {
-      throw Error(ErrorKind::usage, option, "frames do not depend on those before them",
-                  "leave it out, or give `exposure-smoothing`");
-    }
-  }
-  if (job.preroll > 0 && !job.resume_from.empty()) {
-    throw Error(ErrorKind::usage, "`preroll`", "the history comes from `resume-from`", "give one of them");
-  }
-  if (job.checkpoint_every > 0 && job.checkpoint.empty()) {
-    throw Error(ErrorKind::usage, "`checkpoint-every`", "there is no file for it", "give `checkpoint`");
-  }
-  std::error_code ignored;
-  if (fs::is_directory(job.checkpoint, ignored)) {
-    throw Error(ErrorKind::usage, "`checkpoint`", fmt::format("'{}' is a folder", job.checkpoint), "name a file");
   }
 }
 
@@ -86,27 +58,6 @@ void check_target(const JobSettings& job) {
   if (job.only_pixel) {
     throw Error(ErrorKind::usage, option, "with `only-pixel` a single pixel is traced, and no quality is chosen",
                 "give `spp`, as the run's record says of its rate");
-  }
-}
-
-void check_stage(const JobSettings& job) {
-  if (job.stage == SequenceStage::whole) {
-    return;
-  }
-  const auto refuse = [](const char* reason) {
-    throw Error(ErrorKind::usage, "`stage`", reason, "leave it out, or change that");
-  };
-  if (job.accumulate.mode == AccumulateMode::window) {
-    refuse("frames read the samples of those around them, and each part traces those by itself");
-  }
-  if (job.foveation.target.jod) {
-    refuse("the rate needs a pilot of the sequence");
-  }
-  if (job.only_pixel) {
-    refuse("only one pixel is traced");
-  }
-  if (job.preroll > 0) {
-    refuse("tracing needs no history, and `preroll` is for frames whose history is missing");
   }
 }
 
@@ -138,10 +89,8 @@ void check_job(const Job& asked, const JobSchema& schema) {
     check_pilot_budget(job.foveation, request);
   }
   check_ranges(job, schema);
-  check_history_options(job);
   check_target(job);
   check_chunk(job);
-  check_stage(job);
   const auto is_near = [](double place) { return place >= -kMaxGazeScreens && place <= 1 + kMaxGazeScreens; };
   if (job.gaze_at && !(is_near(job.gaze_at->x) && is_near(job.gaze_at->y))) {
     throw Error(ErrorKind::usage, "`gaze-at`",
@@ -158,7 +107,7 @@ void check_job(const Job& asked, const JobSchema& schema) {
   }
   const OutputSettings output = output_settings(job);
   check_output_settings(output, job.frames && job.frames->frames.size() > 1);
-  check_output_folders(output, job.checkpoint);
+  check_output_folders(output);
 }
 
 FilterChoice filter_of(const JobSettings& job) {

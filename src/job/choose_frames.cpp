@@ -76,17 +76,4 @@ std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath
   return frames;
 }
 
-// Up to `count` frames before the first one, as far apart as the first two frames are; there are none before frame 1.
-std::vector<std::int32_t> frames_before(const std::vector<std::int32_t>& frames, std::int32_t count) {
-  const std::int64_t step = frames.size() > 1 ? std::int64_t{frames[1]} - frames[0] : 1;
-  std::vector<std::int32_t> before;
-  for (std::int64_t k = count; k > 0; --k) {
-    const std::int64_t frame = frames.front() - k * step;
-    if (frame >= 1) {
-      before.push_back(static_cast<std::int32_t>(frame));
-    }
-  }
-  return before;
-}
-
 }  // namespace gazetrace

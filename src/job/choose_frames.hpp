@@ -15,7 +15,5 @@ std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath
                                         std::int64_t taken_off_ns, const Scene* scene, std::string& decision);
 // Whether that can depend on the scene's animation.
 bool may_follow_scene(const JobSettings& job, const CameraPath& camera, const GazeLog* log);
-// Up to `count` frames before the first one, as far apart as the first two frames are; there are none before frame 1.
-std::vector<std::int32_t> frames_before(const std::vector<std::int32_t>& frames, std::int32_t count);
 
 }  // namespace gazetrace

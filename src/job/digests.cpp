@@ -66,7 +66,7 @@ std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
   const fs::path lenses = camera_path.filename() == "images.txt" ? camera_path.parent_path() / "cameras.txt" : "";
   std::vector<std::string> files =
       existing({job.environment, job.camera_path, lenses.string(), job.gaze.path, job.gaze.columns_file,
-                job.screen.name, job.recording_screen, ocio_file(job), curve_file(job), job.resume_from});
+                job.screen.name, job.recording_screen, ocio_file(job), curve_file(job)});
   if (!job.scene.empty()) {
     const std::vector<std::string> scene = scene_files(job.scene, job.allow_outside);
     files.insert(files.end(), scene.begin(), scene.end());

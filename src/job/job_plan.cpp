@@ -23,8 +23,8 @@ bool has_density_picture(const FoveationSettings& foveation, std::int64_t frame)
   return !has_frame_number(files) || std::filesystem::exists(frame_file_name(files, static_cast<std::int32_t>(frame)));
 }
 
-// The frames that those of the plan read beside each other. They exist from frame 1
-// on and as far as the camera's path goes, whether or not they are rendered, so that a frame is the same in every run.
+// The frames that those of the plan read beside each other. They exist from frame 1 on and as far as the camera's path
+// goes, whether or not they are rendered, so that a frame is the same in every run.
 void add_frames_around(const JobSettings& job, const CameraPath& camera, ResolvedJob& resolved) {
   const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
   PlanSettings settings = resolved.plan_settings;
@@ -70,9 +70,7 @@ void keep_to_chunk(const JobSettings& job, const CameraPath& camera, std::int64_
 
 void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved) {
   const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
-  std::vector<std::int32_t> planned = frames_before(resolved.frames, job.preroll);
-  planned.insert(planned.end(), resolved.frames.begin(), resolved.frames.end());
-  PlanSettings settings = plan_settings(job, planned, log, taken_off_ns, resolved.decisions);
+  PlanSettings settings = plan_settings(job, resolved.frames, log, taken_off_ns, resolved.decisions);
   if (log != nullptr && !job.gaze_at && !job.gaze_process.empty()) {
     resolved.steering = process_gaze(*log, gaze_steps_of(job.gaze_process));
     resolved.decisions.emplace_back("gaze processing", fmt::format("{}", fmt::join(resolved.steering->reports, "; ")));

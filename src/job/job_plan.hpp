@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plan of a job's frames: of those that are wanted, and of those that these need before and around them.
+// The plan of a job's frames: of those that are wanted, and of those that these need around them.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@ namespace gazetrace {
 // Takes the frames of the job's chunk out of those of the whole sequence.
 void keep_to_chunk(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved);
 
-// Fills in ResolvedJob::plan with the settings that it was made with, and the gaze that steers it. The frames of
-// `preroll` come first in it; frames that are only read beside others are in FramePlan::around.
+// Fills in ResolvedJob::plan with the settings that it was made with, and the gaze that steers it. Frames
+// that are only read beside others are in FramePlan::around.
 void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved);
 
 }  // namespace gazetrace

@@ -20,7 +20,7 @@ std::vector<std::string> touch_names(Touches touches) {
                                                                          {Touch::sampling, "sampling"},
                                                                          {Touch::tracing, "tracing"},
                                                                          {Touch::filter, "filter"},
-                                                                         {Touch::history, "history"},
+                                                                         {Touch::window, "window"},
                                                                          {Touch::color, "colour"},
                                                                          {Touch::output, "output"},
                                                                          {Touch::speed, "speed"},

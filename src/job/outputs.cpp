@@ -16,7 +16,6 @@
 #include <system_error>
 
 #include "core/picture_module.hpp"
-#include "gazetrace/checkpoint.hpp"
 #include "gazetrace/error.hpp"
 #include "job/changed_inputs.hpp"
 #include "job/chunks.hpp"
@@ -62,27 +61,18 @@ void prove_writable(const fs::path& folder) {
   unlink(probe.c_str());
 }
 
-std::set<fs::path> output_folders(const OutputSettings& output, const std::string& checkpoint) {
+std::set<fs::path> output_folders(const OutputSettings& output) {
   std::set<fs::path> folders;
   for (const std::string& pattern : {output.exr.pattern, output.display.pattern, output.map_pattern}) {
     if (!pattern.empty()) {
       folders.insert(folder_of_frames(pattern));
     }
   }
-  if (!checkpoint.empty()) {
-    const fs::path parent = fs::path(checkpoint).parent_path();
-    folders.insert(parent.empty() ? fs::path(".") : parent);
-  }
   return folders;
 }
 
 // No output may replace another output or a file that is read.
-void check_names_differ(const PipelineSettings& settings, std::vector<std::string> outputs,
-                        std::map<std::string, std::string> inputs) {
-  if (!settings.checkpoint.empty()) {
-    outputs.push_back(settings.checkpoint);
-    inputs.erase(settings.resume_from);  // the same file may carry the history from run to run
-  }
+void check_names_differ(std::vector<std::string> outputs, const std::map<std::string, std::string>& inputs) {
   std::error_code ignored;
   for (const std::string& output : outputs) {
     if (!fs::exists(output, ignored)) {
@@ -199,8 +189,8 @@ OutputSettings output_settings(const JobSettings& job) {
   return output;
 }
 
-void check_output_folders(const OutputSettings& output, const std::string& checkpoint) {
-  for (const fs::path& folder : output_folders(output, checkpoint)) {
+void check_output_folders(const OutputSettings& output) {
+  for (const fs::path& folder : output_folders(output)) {
     check_folder(folder);
   }
 }
@@ -233,29 +223,20 @@ PipelineSettings pipeline_settings(const JobSettings& job) {
   settings.trace.guides = show_first_hits(job.exr.aovs);
   settings.reconstruction = {filter_of(job).name};
   settings.accumulate = accumulate_of(job);
-  settings.checkpoint = job.checkpoint;
-  settings.checkpoint_every = job.checkpoint_every;
-  settings.resume_from = job.resume_from;
   settings.exposure = job.exposure;
-  settings.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
   settings.output = output_settings(job);
   settings.fps = job.fps;
   settings.threads = job.threads;
-  settings.is_part = job.chunk.has_value() || job.stage == SequenceStage::trace;
-  settings.stage = job.stage;
-  if (job.stage == SequenceStage::trace) {  // history belongs to the run that finishes
-    settings.checkpoint.clear();
-    settings.resume_from.clear();
-  }
+  settings.is_part = job.chunk.has_value();
   return settings;
 }
 
 void make_output_folders(const ResolvedJob& resolved) {
   const PipelineSettings& settings = resolved.pipeline;
   const std::vector<std::string> files = output_files(settings, resolved.frames);
-  check_names_differ(settings, files, resolved.input_digests);
+  check_names_differ(files, resolved.input_digests);
   refuse_existing(settings, files);
-  for (const fs::path& folder : output_folders(settings.output, settings.checkpoint)) {
+  for (const fs::path& folder : output_folders(settings.output)) {
     prove_writable(folder);
   }
 }
@@ -265,7 +246,7 @@ void prepare_outputs(const ResolvedJob& resolved) {
   const std::vector<std::int32_t>& frames = resolved.frames;
   const std::vector<std::string> files = output_files(settings, frames);
   make_output_folders(resolved);
-  if (!settings.output.display.pattern.empty() && settings.stage != SequenceStage::trace) {
+  if (!settings.output.display.pattern.empty()) {
     picture_module();  // where it is missing, before a frame is traced
   }
   if (settings.output.resume) {
@@ -274,11 +255,6 @@ void prepare_outputs(const ResolvedJob& resolved) {
     if (!settings.output.overwrite && !files.empty()) {
       refuse_to_lose_frames(resolved, files.front());
     }
-  }
-  std::error_code ignored;
-  const bool hands_over = fs::equivalent(settings.checkpoint, settings.resume_from, ignored) && !ignored;
-  if (!settings.checkpoint.empty() && !settings.output.overwrite && !hands_over) {
-    check_checkpoint_target(settings.checkpoint, settings.settings_digest, settings.output.resume);
   }
   write_down(resolved.chunk_borders);
   for (const std::string& path : files) {

@@ -9,8 +9,8 @@ namespace gazetrace {
 OutputSettings output_settings(const JobSettings& job);
 // With the frames that the job's times of a window hold.
 AccumulateSettings accumulate_of(const JobSettings& job);
-// Throws Error(input) where files cannot be created in the folders of the outputs or of the checkpoint, as far as that
-// can be told without creating any.
-void check_output_folders(const OutputSettings& output, const std::string& checkpoint);
+// Throws Error(input) where files cannot be created in the folders of the outputs, as far as that can be told without
+// creating any.
+void check_output_folders(const OutputSettings& output);
 
 }  // namespace gazetrace

@@ -221,7 +221,6 @@ void set_pipeline(ResolveScope scope, ResolvedJob& resolved) {
   if (scope == ResolveScope::render) {
     check_output_settings(resolved.pipeline.output, resolved.frames.size() > 1);
   }
-  resolved.pipeline.preroll = static_cast<std::int32_t>(resolved.plan.frames.size() - resolved.frames.size());
 }
 
 // The digest of what a picture is an estimate of.
@@ -243,13 +242,6 @@ void set_digests(ResolvedJob& resolved) {
     resolved.pipeline.settings_digest =
         digest_settings({{"settings", resolved.pipeline.settings_digest},
                          {"frames of what is judged", fmt::format("{}", judged.sequence_frames)}});
-  }
-}
-
-void begin_with_history(ResolvedJob& resolved) {
-  resolved.history = starting_history(resolved.plan, resolved.pipeline, resolved.warnings);
-  if (resolved.gaze && !resolved.history.passed.empty()) {
-    join_plan(resolved.plan, resolved.history.passed.back(), *resolved.gaze, resolved.plan_settings);
   }
 }
 
@@ -278,12 +270,6 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
   set_pipeline(options.scope, resolved);
   if (options.scope != ResolveScope::plan) {
     set_digests(resolved);
-  }
-  if (options.scope == ResolveScope::render) {
-    if (options.claim) {
-      options.claim(resolved);
-    }
-    begin_with_history(resolved);
   }
   return resolved;
 }

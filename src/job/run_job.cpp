@@ -30,19 +30,13 @@ AovsOfMemory take_aovs_of_memory(JobSettings& settings) {
   return aovs;
 }
 
-// Claims the outputs on the way.
-ResolvedJob resolve_run(const Job& job, const RunObserver& observer, const RunOptions& options, OutputLock& lock) {
+ResolvedJob resolve_run(const Job& job, const RunObserver& observer, const RunOptions& options) {
   if (job.settings.scene.empty() && options.loaded == nullptr) {
     throw Error(ErrorKind::usage, "", "no scene was given", "give `scene`");
   }
   ResolveOptions resolving;
   resolving.progress = observer.loading;
   resolving.loaded = options.loaded;
-  resolving.claim = [&](ResolvedJob& resolved) {
-    make_output_folders(resolved);
-    lock = lock_outputs(resolved.pipeline, resolved.frames);
-    resolved.warnings.insert(resolved.warnings.end(), lock.warnings().begin(), lock.warnings().end());
-  };
   if (!options.shows_frames) {
     return resolve(job, resolving);
   }
@@ -65,7 +59,7 @@ SequenceResult render(ResolvedJob& resolved, PathTracer& tracer, const ColorPipe
     }
   };
   try {
-    return render_sequence(tracer, resolved.plan, color, resolved.pipeline, frames, std::move(resolved.history));
+    return render_sequence(tracer, resolved.plan, color, resolved.pipeline, frames);
   } catch (const Error& error) {
     // The folder is left as it was, so that the same job can be started again with what the message advises.
     if (error.kind() == ErrorKind::usage && !any_done) {
@@ -81,8 +75,10 @@ FinishedRun run_job(const Job& job, const RunObserver& observer, const RunOption
   using Clock = std::chrono::steady_clock;
   const auto color = std::make_shared<ColorPipeline>(job.settings.color);
   FinishedRun run;
-  OutputLock lock;
-  ResolvedJob& resolved = run.resolved = resolve_run(job, observer, options, lock);
+  ResolvedJob& resolved = run.resolved = resolve_run(job, observer, options);
+  make_output_folders(resolved);
+  const OutputLock lock = lock_outputs(resolved.pipeline, resolved.frames);
+  resolved.warnings.insert(resolved.warnings.end(), lock.warnings().begin(), lock.warnings().end());
   prepare_outputs(resolved);
   const std::vector<std::string> files = output_files(resolved.pipeline, resolved.frames);
   if (observer.building_tree) {

@@ -49,7 +49,6 @@ RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer
   record.command_line = command_line;
   record.config_toml = job_as_toml(resolved.job);
   record.settings_digest = settings.settings_digest;
-  record.history = recorded_history(resolved.plan, settings, resolved.history);
   record.input_digests = resolved.input_digests;
   record.frames = format_frame_list(resolved.frames);
   const std::vector<std::string> outputs = output_files(settings, resolved.frames);
@@ -58,7 +57,6 @@ RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer
     keep_chosen_rate(outputs.front(), record);
   }
   record.is_part = settings.is_part;
-  record.stage = settings.stage == SequenceStage::trace ? format_value(settings.stage) : "";
   record.chunk_file = fs::path(resolved.chunk_borders.path).filename().string();
   record.warnings = resolved.warnings;
   for (const auto& [name, text] : resolved.decisions) {

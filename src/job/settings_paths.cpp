@@ -17,8 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A run writes its checkpoint and another one goes on from it, so both lie where outputs lie.
-constexpr std::array kWritten{"checkpoint", "resume-from", "csv", "json", "output"};
+constexpr std::array kWritten{"csv", "json", "output"};
 
 bool is_read(const Option& option) {
   return option.unit.find("FILE") != std::string::npos &&

@@ -77,9 +77,6 @@ WrittenFile write_display_image(const std::string& path, const DisplayImage& ima
   options.quality = settings.quality;
   options.software = header.software;
   options.note = fmt::format("gazetrace:settings_digest={} frame={}", header.settings_digest, header.frame);
-  if (!header.history.empty()) {
-    options.note += " history=" + header.history;
-  }
   options.note += fmt::format(" t_video_ns={} exposure_ev={}", header.t_video_ns, header.exposure_ev);
   if (const GazeAtTime& gaze = header.gaze_true; gaze.state != GazeState::none || gaze.no_gaze || gaze.movement) {
     options.note += " " + gaze_words(gaze);

@@ -159,9 +159,6 @@ void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
   if (frame.samples_per_pixel > 0) {
     add_text(header, "samples_per_pixel", fmt::format("{}", frame.samples_per_pixel));
   }
-  if (!frame.history.empty()) {
-    add_text(header, "history", frame.history);
-  }
   add_text(header, "camera", camera_text(frame.camera));
   if (frame.shutter_close_ns > frame.shutter_open_ns) {
     add_text(header, "shutter_ns", fmt::format("{},{}", frame.shutter_open_ns, frame.shutter_close_ns));

@@ -62,31 +62,23 @@ RunPart read_part(const std::filesystem::path& timing, const PartName& name) {
   return part;
 }
 
-// Parts whose frames depend on those before them have different digests, but share the digest of everything else.
-bool of_one_job(const RunRecord& a, const RunRecord& b) {
-  const bool shared = !a.history.settings_digest.empty() && !b.history.settings_digest.empty();
-  return shared ? a.history.settings_digest == b.history.settings_digest : a.settings_digest == b.settings_digest;
-}
-
 void check_same_settings(const std::vector<RunPart>& parts) {
   const RunPart& first = parts.front();
   for (const RunPart& part : parts) {
-    if (!of_one_job(part.record, first.record) && part.record.denoiser.empty() != first.record.denoiser.empty()) {
+    if (part.record.settings_digest != first.record.settings_digest &&
+        part.record.denoiser.empty() != first.record.denoiser.empty()) {
       const bool first_has = part.record.denoiser.empty();
       throw Error(ErrorKind::input, part.timing_path,
                   fmt::format("was rendered {} Open Image Denoise, and {} {} it", first_has ? "without" : "by",
                               first.timing_path, first_has ? "by" : "without"),
                   "render them all where it is found, or with another `filter`");
     }
-    if (!of_one_job(part.record, first.record)) {
+    if (part.record.settings_digest != first.record.settings_digest) {
       throw Error(ErrorKind::input, part.timing_path, "was rendered with other settings than " + first.timing_path,
                   "keep parts of one job in a folder");
     }
     for (const auto& [path, digest] : part.record.input_digests) {
       const auto other = first.record.input_digests.find(path);
-      if (path == part.record.history.checkpoint || path == first.record.history.checkpoint) {
-        continue;  // successive runs may pass the history on in one file
-      }
       if (other != first.record.input_digests.end() && other->second != digest) {
         throw Error(ErrorKind::input, part.timing_path,
                     "was rendered from another version of " + path + " than " + first.timing_path,

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -53,10 +51,6 @@ std::string run_record_file_name(const std::string& run_name, const std::string&
   return part_file_name(run_name, "run", ".json", frames, is_part);
 }
 
-std::string traced_file_name(const std::string& run_name, std::int32_t frame) {
-  return file_of_run(run_name, fmt::format("traced.{:04}.sparse", frame));
-}
-
 std::string run_record_json(const RunRecord& record) {
   Json bad_samples = Json::array();
   for (const BadSample& bad : record.bad_samples) {
@@ -75,13 +69,8 @@ std::string run_record_json(const RunRecord& record) {
                   {"command_line", record.command_line},
                   {"settings_digest", record.settings_digest},
                   {"part_digests", record.part_digests},
-                  {"history",
-                   {{"settings_digest", record.history.settings_digest},
-                    {"frames", record.history.frames},
-                    {"checkpoint", record.history.checkpoint}}},
                   {"frames", record.frames},
                   {"is_part", record.is_part},
-                  {"stage", record.stage},
                   {"chunk_file", record.chunk_file},
                   {"input_digests", record.input_digests},
                   {"facts", record.facts},
@@ -109,16 +98,10 @@ RunRecord read_run_record(const std::string& path) {
     json.at("settings_digest").get_to(record.settings_digest);
     json.at("frames").get_to(record.frames);
     json.at("is_part").get_to(record.is_part);
-    // Records of earlier versions have no denoiser, stage, parts, history and files.
+    // Records of earlier versions have no denoiser, parts and files.
     record.denoiser = json.value("denoiser", "");
-    record.stage = json.value("stage", "");
     record.chunk_file = json.value("chunk_file", "");
     record.part_digests = json.value("part_digests", record.part_digests);
-    if (const auto history = json.find("history"); history != json.end()) {
-      history->at("settings_digest").get_to(record.history.settings_digest);
-      history->at("frames").get_to(record.history.frames);
-      history->at("checkpoint").get_to(record.history.checkpoint);
-    }
     json.at("input_digests").get_to(record.input_digests);
     json.at("facts").get_to(record.facts);
     json.at("warnings").get_to(record.warnings);

@@ -36,7 +36,6 @@ FrameStamp read_frame_stamp(const std::string& path) {
     stamp.settings_digest = read_exr_text(path, "gazetrace:settings_digest");
     if (!stamp.settings_digest.empty()) {
       stamp.frame = read_exr_integer(path, "gazetrace:frame");
-      stamp.history = read_exr_text(path, "gazetrace:history");
       stamp.exposure_ev = read_exr_number(path, "gazetrace:exposure_ev");
     }
     return stamp;
@@ -44,7 +43,6 @@ FrameStamp read_frame_stamp(const std::string& path) {
   const std::string note = read_image_note(path);
   stamp.settings_digest = word_after(note, "gazetrace:settings_digest=");
   stamp.frame = number_in<std::int32_t>(word_after(note, " frame="));
-  stamp.history = word_after(note, " history=");
   stamp.exposure_ev = number_in<double>(word_after(note, " exposure_ev="));
   return stamp;
 }
@@ -52,20 +50,6 @@ FrameStamp read_frame_stamp(const std::string& path) {
 std::string read_settings_digest(const std::string& path) {
   return path.ends_with(".exr") ? read_exr_text(path, "gazetrace:settings_digest")
                                 : word_after(read_image_note(path), "gazetrace:settings_digest=");
-}
-
-std::string history_text(const std::vector<std::int32_t>& passed) {
-  constexpr std::size_t kLongest = 60;  // of a header whose whole text DPX cuts after 200 bytes
-  if (passed.empty()) {
-    return "none";
-  }
-  std::string list = format_frame_list(passed);
-  if (list.size() > kLongest) {
-    Digest digest;
-    digest.add(list);
-    list = digest.hex();
-  }
-  return list;
 }
 
 std::string digest_settings(const std::vector<std::pair<std::string, std::string>>& settings) {

@@ -11,9 +11,6 @@
 #include "gazetrace/error.hpp"
 #include "output/exr_seal.hpp"
 #include "output/written_file.hpp"
-#include "pipeline/sealed_file.hpp"
-#include "pipeline/sequence_history.hpp"
-#include "pipeline/unfinished_frames.hpp"
 
 namespace gazetrace {
 namespace {
@@ -35,7 +32,7 @@ bool is_whole_picture(const std::string& path) {
   }
 }
 
-// Those of a frame's files that say which settings and which history made them.
+// Those of a frame's files that say which settings made them.
 std::vector<std::string> stamped_pictures(const OutputSettings& output, std::int32_t frame) {
   std::vector<std::string> paths;
   for (const std::string& pattern : {output.exr.pattern, output.display.pattern}) {
@@ -47,12 +44,7 @@ std::vector<std::string> stamped_pictures(const OutputSettings& output, std::int
 }
 
 // Whether another run has finished the frame, whose work would be replaced.
-bool is_of_others(std::int32_t frame, const std::string& history, const PipelineSettings& settings) {
-  if (leaves_unfinished(settings)) {
-    const std::string digest = read_unfinished_digest(settings, frame);
-    // Damage may have changed the digest itself: a file that is not whole is nobody's finished work.
-    return !digest.empty() && digest != settings.settings_digest && is_sealed(unfinished_file_name(settings, frame));
-  }
+bool is_of_others(std::int32_t frame, const PipelineSettings& settings) {
   bool is_other = false;
   for (const std::string& path : stamped_pictures(settings.output, frame)) {
     if (!fs::exists(path)) {
@@ -60,7 +52,7 @@ bool is_of_others(std::int32_t frame, const std::string& history, const Pipeline
     }
     const FrameStamp stamp = read_frame_stamp(path);
     is_other = is_other || (!stamp.settings_digest.empty() && stamp.frame.value_or(frame) == frame &&
-                            (stamp.settings_digest != settings.settings_digest || stamp.history != history));
+                            stamp.settings_digest != settings.settings_digest);
   }
   return is_other;
 }
@@ -78,14 +70,9 @@ FinishedFrames::FinishedFrames(const PipelineSettings& settings, const WrittenFi
   }
 }
 
-bool FinishedFrames::is_complete(std::int32_t frame, const std::string& history) const {
-  if (leaves_unfinished(settings_)) {
-    const std::string path = unfinished_file_name(settings_, frame);
-    return is_as_written(path) && read_unfinished_digest(settings_, frame) == settings_.settings_digest &&
-           vouches(path, is_sealed);
-  }
+bool FinishedFrames::is_complete(std::int32_t frame) const {
   for (const std::string& path : stamped_pictures(settings_.output, frame)) {
-    if (!is_complete_picture(path, frame, history)) {
+    if (!is_complete_picture(path, frame)) {
       return false;
     }
   }
@@ -94,17 +81,15 @@ bool FinishedFrames::is_complete(std::int32_t frame, const std::string& history)
   }
   // A sampling map says nothing of itself; it appears before the frame's other files and only when complete.
   const std::string map = frame_file_name(settings_.output.map_pattern, frame);
-  return fs::exists(map) && is_as_written(map) && vouches(map, is_whole_picture);
+  return fs::exists(map) && is_as_written(map) && vouches(map);
 }
 
-bool FinishedFrames::is_complete_picture(const std::string& path, std::int32_t frame,
-                                         const std::string& history) const {
+bool FinishedFrames::is_complete_picture(const std::string& path, std::int32_t frame) const {
   if (!fs::exists(path) || !is_as_written(path)) {
     return false;
   }
   const FrameStamp stamp = read_frame_stamp(path);
-  return stamp.settings_digest == settings_.settings_digest && stamp.history == history &&
-         stamp.frame.value_or(frame) == frame && vouches(path, is_whole_picture);
+  return stamp.settings_digest == settings_.settings_digest && stamp.frame.value_or(frame) == frame && vouches(path);
 }
 
 void FinishedFrames::add_files(std::int32_t frame, WrittenFiles& files) const {
@@ -120,9 +105,9 @@ std::vector<std::string> FinishedFrames::files_of(std::int32_t frame) const {
   return {files.begin() + std::min<std::ptrdiff_t>(2, static_cast<std::ptrdiff_t>(files.size())), files.end()};
 }
 
-bool FinishedFrames::vouches(const std::string& path, bool (*is_whole)(const std::string&)) const {
+bool FinishedFrames::vouches(const std::string& path) const {
   return settings_.output.trust_files ||
-         known_.contains(name_in_record(folder_of_run(settings_.output.run_name), path)) || is_whole(path);
+         known_.contains(name_in_record(folder_of_run(settings_.output.run_name), path)) || is_whole_picture(path);
 }
 
 bool FinishedFrames::is_as_written(const std::string& path) const {
@@ -130,13 +115,11 @@ bool FinishedFrames::is_as_written(const std::string& path) const {
                                        name_in_record(folder_of_run(settings_.output.run_name), path)));
 }
 
-std::vector<std::int32_t> frames_of_others(const FramePlan& plan, const PipelineSettings& settings,
-                                           const TemporalHistory& history) {
-  const std::vector<std::string> histories = expected_histories(plan, settings, history);
+std::vector<std::int32_t> frames_of_others(const FramePlan& plan, const PipelineSettings& settings) {
   std::vector<std::int32_t> others;
-  for (std::size_t i = static_cast<std::size_t>(settings.preroll); i < plan.frames.size(); ++i) {
-    if (is_of_others(plan.frames[i].frame, histories[i], settings)) {
-      others.push_back(plan.frames[i].frame);
+  for (const FrameRequest& request : plan.frames) {
+    if (is_of_others(request.frame, settings)) {
+      others.push_back(request.frame);
     }
   }
   return others;

@@ -16,17 +16,16 @@ class FinishedFrames {
   // `known` are the files that the run so far lists. Keeps references to both.
   FinishedFrames(const PipelineSettings& settings, const WrittenFiles& known);
 
-  // Whether all files of the frame are there, as they were written, under these settings and with this history
-  // (history_text()).
-  [[nodiscard]] bool is_complete(std::int32_t frame, const std::string& history) const;
+  // Whether all files of the frame are there, as they were written, under these settings.
+  [[nodiscard]] bool is_complete(std::int32_t frame) const;
   // The files of a complete frame. What the run so far does not list is listed as it is now.
   void add_files(std::int32_t frame, WrittenFiles& files) const;
 
  private:
-  [[nodiscard]] bool is_complete_picture(const std::string& path, std::int32_t frame, const std::string& history) const;
+  [[nodiscard]] bool is_complete_picture(const std::string& path, std::int32_t frame) const;
   [[nodiscard]] std::vector<std::string> files_of(std::int32_t frame) const;
   // Of a file that the run so far does not list nobody says that it is whole but itself.
-  [[nodiscard]] bool vouches(const std::string& path, bool (*is_whole)(const std::string&)) const;
+  [[nodiscard]] bool vouches(const std::string& path) const;
   [[nodiscard]] bool is_as_written(const std::string& path) const;
 
   const PipelineSettings& settings_;

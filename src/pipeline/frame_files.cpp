@@ -22,7 +22,7 @@ double samples_of_every_pixel(const ImageGray& samples) {
 }
 
 FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const PipelineSettings& settings,
-                      const RenderedFrame& rendered, const std::string& history) {
+                      const RenderedFrame& rendered) {
   FrameHeader header;
   header.frame = request.frame;
   header.t_video_ns = request.t_video_ns;
@@ -39,7 +39,6 @@ FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const 
   header.settings_digest = settings.settings_digest;
   header.mean_digest = settings.mean_digest;
   header.samples_per_pixel = samples_of_every_pixel(rendered.frame.sample_count);
-  header.history = history;
   header.software = std::string("gazetrace ") + kVersion;
   return header;
 }
@@ -51,10 +50,10 @@ bool writes_anything(const OutputSettings& output) {
 }  // namespace
 
 void write_frame_files(const FrameRequest& request, const FramePlan& plan, const RenderedFrame& rendered,
-                       const ColorPipeline& color, const PipelineSettings& settings, const std::string& history,
-                       TimingRow& row, SequenceResult& result) {
+                       const ColorPipeline& color, const PipelineSettings& settings, TimingRow& row,
+                       SequenceResult& result) {
   const OutputSettings& output = settings.output;
-  const FrameHeader header = header_of(request, plan, settings, rendered, history);
+  const FrameHeader header = header_of(request, plan, settings, rendered);
   const auto list = [&](const std::string& path, WrittenFile file) {
     file.frame = request.frame;
     result.files.insert_or_assign(name_in_record(folder_of_run(output.run_name), path), std::move(file));
@@ -109,10 +108,6 @@ std::vector<std::string> output_files(const PipelineSettings& settings, const st
   files.push_back(run_record_file_name(output.run_name, list, settings.is_part));
   files.push_back(timing_file_name(output.run_name, list, settings.is_part));
   for (const std::int32_t frame : frames) {
-    if (settings.stage == SequenceStage::trace) {
-      files.push_back(traced_file_name(output.run_name, frame));
-      continue;
-    }
     for (const std::string& pattern : {output.map_pattern, output.display.pattern, output.exr.pattern}) {
       if (!pattern.empty()) {
         files.push_back(frame_file_name(pattern, frame));

@@ -90,20 +90,20 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request, KnownLight& known)
   return traced;
 }
 
-RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory& history) const {
+RenderedFrame FrameRenderer::render(const FrameRequest& request) const {
   KnownLight none;
-  return render(request, history, none);
+  return render(request, none);
 }
 
-RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory& history, KnownLight& known) const {
-  return finish(request, trace(request, known), history);
+RenderedFrame FrameRenderer::render(const FrameRequest& request, KnownLight& known) const {
+  return finish(request, trace(request, known));
 }
 
-RenderedFrame FrameRenderer::finish(const FrameRequest& request, TracedFrame traced, TemporalHistory& history) const {
+RenderedFrame FrameRenderer::finish(const FrameRequest& request, TracedFrame traced) const {
   const SparseFrame sparse = std::move(traced.sparse);
   traced.sparse.stats = sparse.stats;
   const SamplingMap map = traced.map;
-  return finish_with(request, map, sparse, std::move(traced), history);
+  return finish_with(request, map, sparse, std::move(traced));
 }
 
 bool FrameRenderer::at_rest(const FrameRequest& a, const FrameRequest& b) const {
@@ -119,12 +119,11 @@ WindowFrame FrameRenderer::window_frame(const FrameRequest& request, KnownLight&
   return frame;
 }
 
-RenderedFrame FrameRenderer::finish(const std::vector<const WindowFrame*>& window, std::size_t own,
-                                    TemporalHistory& history) const {
+RenderedFrame FrameRenderer::finish(const std::vector<const WindowFrame*>& window, std::size_t own) const {
   const WindowFrame& frame = *window[own];
   const FrameRequest& request = frame.request;
   if (settings_.accumulate.mode != AccumulateMode::window) {
-    return finish(request, frame.traced, history);  // traced without the surfaces by which frames join
+    return finish(request, frame.traced);  // traced without the surfaces by which frames join
   }
   const auto samples_of = [](const WindowFrame& one) {
     return WindowSamples{one.request.frame, &one.request.camera, &one.traced.map, &one.traced.sparse};
@@ -147,15 +146,11 @@ RenderedFrame FrameRenderer::finish(const std::vector<const WindowFrame*>& windo
     }
     return join.joined();
   });
-  return finish_with(request, joined.map, joined.sparse, std::move(itself), history);
-}
-
-bool uses_history(const FrameSettings& settings) {
-  return settings.exposure.mode == ExposureMode::log_average && settings.exposure.smoothing_s > 0;
+  return finish_with(request, joined.map, joined.sparse, std::move(itself));
 }
 
 RenderedFrame FrameRenderer::finish_with(const FrameRequest& request, const SamplingMap& map, const SparseFrame& shown,
-                                         TracedFrame own, TemporalHistory& history) const {
+                                         TracedFrame own) const {
   RenderedFrame rendered;
   rendered.times = own.times;
   StageTimes& times = rendered.times;
@@ -173,17 +168,10 @@ RenderedFrame FrameRenderer::finish_with(const FrameRequest& request, const Samp
   rendered.samples = std::move(own.sparse.stats);
   rendered.pilot = std::move(own.pilot);
   rendered.prediction = own.prediction;
-  history.passed.push_back(request.frame);
-  expose(request, settings_, history, rendered);
+  rendered.exposure_ev =
+      timed(times.exposure_ms, [&] { return choose_exposure_ev(rendered.frame.radiance, settings_.exposure); });
   add_layers(request, std::move(light), rendered);
   return rendered;
-}
-
-void expose(const FrameRequest& request, const FrameSettings& settings, TemporalHistory& history,
-            RenderedFrame& rendered) {
-  rendered.exposure_ev = timed(rendered.times.exposure_ms, [&] {
-    return choose_exposure_ev(rendered.frame.radiance, request.t_video_ns, settings.exposure, history);
-  });
 }
 
 MapContext map_context(const FrameRequest& request, std::uint64_t seed, int threads) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stages that a frame goes through whether its samples were traced now or are joined from files.
+// The wall times of a frame's stages.
 #pragma once
 
 #include "core/stopwatch.hpp"
@@ -29,9 +29,5 @@ void add_times(const From& from, To& to) {
   to.exposure_ms += from.exposure_ms;
   to.layers_ms += from.layers_ms;
 }
-
-// Chooses the frame's exposure.
-void expose(const FrameRequest& request, const FrameSettings& settings, TemporalHistory& history,
-            RenderedFrame& rendered);
 
 }  // namespace gazetrace

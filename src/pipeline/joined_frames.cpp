@@ -19,7 +19,7 @@ JoinedFrames::JoinedFrames(const FrameRenderer& renderer, const FramePlan& plan,
   }
 }
 
-RenderedFrame JoinedFrames::render(const FrameRequest& request, TemporalHistory& history) {
+RenderedFrame JoinedFrames::render(const FrameRequest& request) {
   const AccumulateSettings& reach = renderer_->settings().accumulate;
   // Consecutive frames as far as they are there. In 64 bits, since the largest number of a frame has none after it.
   const auto own = requests_.find(request.frame);
@@ -55,7 +55,7 @@ RenderedFrame JoinedFrames::render(const FrameRequest& request, TemporalHistory&
     }
     window.push_back(&found->second);
   }
-  RenderedFrame rendered = renderer_->finish(window, place, history);
+  RenderedFrame rendered = renderer_->finish(window, place);
   rendered.others = std::move(others);
   add_times(times, rendered.times);
   return rendered;

@@ -17,9 +17,9 @@ class JoinedFrames {
   // where they themselves are rendered.
   JoinedFrames(const FrameRenderer& renderer, const FramePlan& plan, std::set<std::int32_t> counted);
 
-  // Frames must be asked for in ascending order. `history` is as for FrameRenderer::render(). The samples of frames
-  // beside `counted` ones are counted in RenderedFrame::others of the first frame that reads them.
-  RenderedFrame render(const FrameRequest& request, TemporalHistory& history);
+  // Frames must be asked for in ascending order. The samples of frames beside `counted` ones are counted in
+  // RenderedFrame::others of the first frame that reads them.
+  RenderedFrame render(const FrameRequest& request);
 
  private:
   const FrameRenderer* renderer_;

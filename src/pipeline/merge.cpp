@@ -10,10 +10,12 @@
 
 #include "gazetrace/output.hpp"
 #include "gazetrace/output_lock.hpp"
-#include "output/history_chain.hpp"
 
 namespace gazetrace {
 namespace {
+
+// Which part has made which frame.
+using FrameOwners = std::map<std::int32_t, const RunPart*>;
 
 std::vector<std::int32_t> frames_of(const FrameOwners& owners) {
   std::vector<std::int32_t> frames;
@@ -76,45 +78,6 @@ std::vector<std::int32_t> missing_frames(const std::vector<RunPart>& parts, cons
   return {missing.begin(), missing.end()};
 }
 
-bool have_history(const std::vector<RunPart>& parts) {
-  return std::all_of(parts.begin(), parts.end(),
-                     [](const RunPart& part) { return !part.record.history.settings_digest.empty(); });
-}
-
-// The frames that exist together with the missing ones, which may still have gone into the history of others.
-FrameOwners all_frames(const std::vector<RunPart>& parts, FrameOwners owners,
-                       const std::vector<std::int32_t>& missing) {
-  for (const std::int32_t frame : missing) {
-    owners.emplace(frame, nullptr);
-  }
-  for (const RunPart& part : parts) {
-    for (const std::int32_t frame : parse_frame_list(part.record.frames)) {
-      if (const auto found = owners.find(frame); found != owners.end() && found->second == nullptr) {
-        found->second = &part;
-      }
-    }
-  }
-  return owners;
-}
-
-// Sets the history as if a single run, which began as the first part did, had made all frames.
-void continue_history(RunRecord& whole, const RunPart& first) {
-  whole.history = first.record.history;
-  const auto checkpoint = first.record.input_digests.find(whole.history.checkpoint);
-  if (checkpoint != first.record.input_digests.end()) {
-    whole.input_digests.insert(*checkpoint);
-  }
-}
-
-void refuse_traced_parts(const std::vector<RunPart>& parts) {
-  for (const RunPart& part : parts) {
-    if (!part.record.stage.empty()) {
-      throw Error(ErrorKind::usage, part.record_path, "its frames are traced, and there are no pictures to join",
-                  "make them by 'gazetrace render' of the same job with `stage` finish, which needs no merge");
-    }
-  }
-}
-
 // Frames of which a file is bad count as missing.
 void leave_out(const std::vector<BadFile>& bad, std::vector<RunPart>& parts, Warnings& warnings) {
   for (const BadFile& file : bad) {
@@ -143,20 +106,14 @@ RunRecord join_records(const std::vector<RunPart>& parts, const std::string& fra
   whole.facts.clear();
   whole.warnings.clear();
   whole.bad_samples.clear();
-  whole.part_digests.clear();
   whole.input_digests.clear();
   whole.files.clear();
   for (const RunPart& part : parts) {
     const RunRecord& record = part.record;
     append_new(whole.warnings, record.warnings);
-    whole.part_digests.push_back(record.settings_digest);
     whole.files.insert(record.files.begin(), record.files.end());
     whole.bad_samples.insert(whole.bad_samples.end(), record.bad_samples.begin(), record.bad_samples.end());
-    for (const auto& [path, digest] : record.input_digests) {
-      if (path != record.history.checkpoint) {
-        whole.input_digests.emplace(path, digest);
-      }
-    }
+    whole.input_digests.insert(record.input_digests.begin(), record.input_digests.end());
     const auto same = [&](const char* what, const std::string& a, const std::string& b) {
       if (a != b) {
         append_new(warnings, {fmt::format("parts differ in {}: '{}' and '{}'", what, a, b)});
@@ -182,10 +139,6 @@ RunRecord join_records(const std::vector<RunPart>& parts, const std::string& fra
     }
   }
   append_new(whole.warnings, warnings);
-  const std::vector<std::string>& digests = whole.part_digests;
-  if (std::all_of(digests.begin(), digests.end(), [&](const std::string& d) { return d == digests.front(); })) {
-    whole.part_digests.clear();
-  }
   std::stable_sort(whole.bad_samples.begin(), whole.bad_samples.end(),
                    [](const BadSample& a, const BadSample& b) { return a.frame < b.frame; });
   return whole;
@@ -204,7 +157,6 @@ MergeResult merge_runs(const std::string& where, const MergeOptions& options) {
       throw Error(ErrorKind::usage, path, "exists already", "give `overwrite` to replace it");
     }
   }
-  refuse_traced_parts(parts);
   MergeResult result;
   result.warnings = lock.warnings();
   if (!options.trust_files) {
@@ -241,17 +193,11 @@ MergeResult merge_runs(const std::string& where, const MergeOptions& options) {
   if (owners.empty()) {
     throw Error(ErrorKind::input, directory, "no frame is left to join", "render the parts again");
   }
-  if (have_history(parts)) {
-    check_histories(all_frames(parts, owners, missing), result.warnings);
-  }
   for (const RunPart& part : parts) {
     result.parts.push_back(part.timing_path);
   }
   result.frames = format_frame_list(frames_of(owners));
-  RunRecord record = join_records(parts, result.frames, result.warnings);
-  if (have_history(parts)) {
-    continue_history(record, *owners.begin()->second);
-  }
+  const RunRecord record = join_records(parts, result.frames, result.warnings);
   write_text_atomically(timing_path, timing_csv_text(rows));
   write_text_atomically(record_path, run_record_json(record));
   return result;

@@ -173,7 +173,6 @@ void write_record(RunRecord record, const MeanSettings& settings, const MergeRes
   record.command_line = settings.command_line;
   record.settings_digest = digests.front();
   record.part_digests = digests;
-  record.history = {};
   record.frames = result.frames;
   record.is_part = false;
   record.chunk_file.clear();

@@ -114,18 +114,13 @@ OutputLock lock_outputs(const PipelineSettings& settings, const std::vector<std:
   FilesByFolder claims;
   const OutputSettings& output = settings.output;
   const std::vector<std::string> files = output_files(settings, frames);
-  const bool has_pictures = settings.stage != SequenceStage::trace;
-  for (std::size_t i = 0; i < files.size() && (i < 2 || !has_pictures); ++i) {
+  for (std::size_t i = 0; i < std::min<std::size_t>(files.size(), 2); ++i) {
     claims[folder_of_run(output.run_name)].push_back(files[i]);
   }
   for (const std::string& pattern : {output.exr.pattern, output.display.pattern, output.map_pattern}) {
-    for (std::size_t i = 0; !pattern.empty() && has_pictures && i < frames.size(); ++i) {
+    for (std::size_t i = 0; !pattern.empty() && i < frames.size(); ++i) {
       claims[folder_of_frames(pattern)].push_back(frame_file_name(pattern, frames[i]));
     }
-  }
-  if (!settings.checkpoint.empty()) {
-    const std::string folder = fs::path(settings.checkpoint).parent_path().string();
-    claims[folder.empty() ? "." : folder].push_back(settings.checkpoint);
   }
   return lock_files(claims);
 }

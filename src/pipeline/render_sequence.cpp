@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames in order, each to its files: what is skipped or done again, the row of timing.csv, the checkpoint. Only the
-// history and the log of the run outlive a frame.
+// Frames in order, each to its files: what is skipped, and the row of timing.csv. Only the log of the run outlives a
+// frame.
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,19 +11,17 @@
 
 #include "core/stopwatch.hpp"
 #include "gazetrace/build_info.hpp"
-#include "gazetrace/checkpoint.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/pipeline.hpp"
 #include "output/aovs.hpp"
 #include "pipeline/file_journal.hpp"
+#include "pipeline/frame_files.hpp"
+#include "pipeline/frame_stages.hpp"
 #include "pipeline/quality/clip_rate.hpp"
 #include "pipeline/resume.hpp"
-#include "pipeline/sequence_frame.hpp"
-#include "pipeline/sequence_history.hpp"
 #include "pipeline/sequence_renderer.hpp"
 #include "pipeline/timing_log.hpp"
 #include "pipeline/timing_row.hpp"
-#include "pipeline/unfinished_frames.hpp"
 
 namespace gazetrace {
 namespace {
@@ -42,18 +40,17 @@ FrameSettings frame_settings(const PipelineSettings& settings, const ColorPipeli
 
 RunPaths paths_of(const FramePlan& plan, const PipelineSettings& settings) {
   std::vector<std::int32_t> frames;
-  for (std::size_t i = static_cast<std::size_t>(settings.preroll); i < plan.frames.size(); ++i) {
-    frames.push_back(plan.frames[i].frame);
+  for (const FrameRequest& request : plan.frames) {
+    frames.push_back(request.frame);
   }
   const std::vector<std::string> files = output_files(settings, frames);
   return files.empty() ? RunPaths() : RunPaths{files[0], files[1]};
 }
 
-// Those to be rendered, and with `replayed` those that are traced for their history alone as well.
-std::vector<std::int32_t> frames_to_make(const FramePlan& plan, const ResumePlan& resume, bool replayed) {
+std::vector<std::int32_t> frames_to_render(const FramePlan& plan, const ResumePlan& resume) {
   std::vector<std::int32_t> frames;
   for (std::size_t i = 0; i < plan.frames.size(); ++i) {
-    if (resume.work[i] == FrameWork::render || (replayed && resume.work[i] == FrameWork::replay)) {
+    if (!resume.is_done[i]) {
       frames.push_back(plan.frames[i].frame);
     }
   }
@@ -102,113 +99,93 @@ struct RunLog {
   }
 };
 
-// The file of PipelineSettings::checkpoint while frames pass.
-class CheckpointFile {
- public:
-  CheckpointFile(const PipelineSettings& settings, bool is_wanted) : settings_(settings), is_wanted_(is_wanted) {}
-
-  void frame_made() { is_old_ = true; }
-  void save_if_due(const TemporalHistory& history, std::size_t done, std::size_t total) {
-    const auto every = static_cast<std::size_t>(settings_.checkpoint_every);
-    if (done == total || (settings_.checkpoint_every > 0 && done % every == 0)) {
-      save(history);
-    }
-  }
-  void save(const TemporalHistory& history) {
-    if (is_wanted_ && is_old_) {
-      save_checkpoint(settings_.checkpoint, history, settings_.settings_digest);
-      is_old_ = false;
-    }
-  }
-
- private:
-  const PipelineSettings& settings_;
-  bool is_wanted_;
-  bool is_old_ = false;  // frames have passed since it was written
+// What a sequence is made from, and who is told of it.
+struct SequenceInputs {
+  const FramePlan& plan;
+  const ColorPipeline& color;
+  const PipelineSettings& settings;
+  const PipelineObserver& observer;
 };
 
-// A frame that has passed, made or not.
-void tell(const PipelineObserver& observer, const FrameRequest& request, bool skipped, const TimingRow& row,
-          RenderedFrame&& rendered) {
-  if (observer.frame_done) {
-    observer.frame_done(row, skipped);
+// Makes the picture of a frame. Its files are those of `result`, and its row lacks what the choice of a rate took.
+// Error(interrupted) leaves the row as it was, and `result` without files: a frame is given up only while it is traced.
+RenderedFrame make_frame(const SequenceInputs& inputs, const FrameRequest& request, SequenceRenderer& renderer,
+                         TimingRow& row, SequenceResult& result) {
+  const Stopwatch total;
+  result.files.clear();
+  RenderedFrame rendered = renderer.render(request);
+  add_samples(rendered.samples, rendered.pilot, rendered.map, row);
+  add_others(rendered.others, row);
+  result.bad_samples.insert(result.bad_samples.end(), rendered.samples.bad_samples.begin(),
+                            rendered.samples.bad_samples.end());
+  add_times(rendered.times, row);
+  add_prediction(rendered.prediction, row);
+  row.exposure_ev = rendered.exposure_ev;
+  if (inputs.observer.frame_ready) {
+    inputs.observer.frame_ready(request, rendered.frame, rendered.exposure_ev);
   }
-  if (observer.take_frame && !skipped && !rendered.frame.radiance.empty()) {
-    observer.take_frame(request, std::move(rendered), row);
-  }
+  write_frame_files(request, inputs.plan, rendered, inputs.color, inputs.settings, row, result);
+  row.total_ms += total.elapsed_ms();
+  return rendered;
 }
 
 // All frames of the plan in order, until the sequence is asked to stop.
 void make_frames(const SequenceInputs& inputs, const ResumePlan& resume, SequenceRenderer& renderer,
-                 const std::optional<ClipRate>& rate, TemporalHistory& history, RunLog& log, SequenceResult& result) {
+                 const std::optional<ClipRate>& rate, RunLog& log, SequenceResult& result) {
   const FramePlan& plan = inputs.plan;
   const PipelineObserver& observer = inputs.observer;
-  CheckpointFile checkpoint(inputs.settings, resume.writes_checkpoint);
   double made_ms = 0;
-  int made = 0;
   for (std::size_t i = 0; i < plan.frames.size(); ++i) {
     const FrameRequest& request = plan.frames[i];
-    const FrameWork work = resume.work[i];
     TimingRow row = timing_row(request);
-    RenderedFrame rendered;
-    if (work != FrameWork::skip) {
-      result.interrupted = is_asked_to_stop(observer, made == 0 ? 0 : made_ms / made);
-      if (result.interrupted) {
-        break;
-      }
-      if (observer.frame_begins) {
-        observer.frame_begins(request);
-      }
-      const Stopwatch own_time;  // without the choice of the rate, which the first row counts
-      result.interrupted =
-          !is_completed([&] { rendered = make_frame(inputs, request, work, renderer, history, row, result); });
-      if (result.interrupted) {
-        break;
-      }
-      if (work == FrameWork::render) {
-        if (rate) {
-          add_rate(*rate, result.rows.empty(), row);
-        }
-        log.add(row, result);
-      }
-      made_ms += own_time.elapsed_ms();
-      ++made;
-      checkpoint.frame_made();
-    }
-    checkpoint.save_if_due(history, i + 1, plan.frames.size());
-    const bool skipped = work != FrameWork::render;
-    if (skipped && i >= static_cast<std::size_t>(inputs.settings.preroll)) {
+    if (resume.is_done[i]) {
       result.skipped.push_back(request.frame);
+      if (observer.frame_done) {
+        observer.frame_done(row, true);
+      }
+      continue;
     }
-    tell(observer, request, skipped, row, std::move(rendered));
-  }
-  if (result.interrupted) {
-    checkpoint.save(history);
+    const std::size_t made = result.rows.size();
+    result.interrupted = is_asked_to_stop(observer, made == 0 ? 0 : made_ms / static_cast<double>(made));
+    if (result.interrupted) {
+      return;
+    }
+    if (observer.frame_begins) {
+      observer.frame_begins(request);
+    }
+    const Stopwatch own_time;  // without the choice of the rate, which the first row counts
+    RenderedFrame rendered;
+    result.interrupted = !is_completed([&] { rendered = make_frame(inputs, request, renderer, row, result); });
+    if (result.interrupted) {
+      return;
+    }
+    if (rate) {
+      add_rate(*rate, result.rows.empty(), row);
+    }
+    log.add(row, result);
+    made_ms += own_time.elapsed_ms();
+    if (observer.frame_done) {
+      observer.frame_done(row, false);
+    }
+    if (observer.take_frame) {
+      observer.take_frame(request, std::move(rendered), row);
+    }
   }
 }
 
 }  // namespace
 
 SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color,
-                               const PipelineSettings& settings, const PipelineObserver& observer,
-                               TemporalHistory history) {
+                               const PipelineSettings& settings, const PipelineObserver& observer) {
   const RunPaths paths = paths_of(plan, settings);
-  ResumePlan resume = plan_resume(plan, settings, paths, history);
-  if (resume.taken_up) {
-    history = std::move(*resume.taken_up);
-  }
-  const std::vector<std::int32_t> to_make = frames_to_make(plan, resume, true);
-  const std::vector<std::int32_t> to_render = frames_to_make(plan, resume, false);
-  check_history_for(to_make, settings, history);
-  if (settings.stage == SequenceStage::finish) {
-    check_all_traced(to_make, settings);
-  }
+  const ResumePlan resume = plan_resume(plan, settings, paths);
+  const std::vector<std::int32_t> to_render = frames_to_render(plan, resume);
   SequenceResult result;
   result.warnings = resume.warnings;
 
   FrameSettings own = frame_settings(settings, color);
   std::optional<ClipRate> rate;
-  if (own.foveation.target.jod && !to_make.empty()) {
+  if (own.foveation.target.jod && !to_render.empty()) {
     result.interrupted =
         is_asked_to_stop(observer, 0) || !is_completed([&] { rate = clip_rate(tracer, plan.judged, own, color); });
   }
@@ -226,7 +203,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
     color.prepare(first.width_px, first.height_px, display_image_bits(settings.output.display), settings.threads);
   }
   if (!result.interrupted) {
-    make_frames({plan, color, settings, observer}, resume, renderer, rate, history, log, result);
+    make_frames({plan, color, settings, observer}, resume, renderer, rate, log, result);
   }
   if (result.interrupted) {
     result.left = frames_left(to_render, result.rows);

@@ -13,17 +13,8 @@ SequenceRenderer::SequenceRenderer(PathTracer& tracer, FrameSettings settings, c
   }
 }
 
-RenderedFrame SequenceRenderer::render(const FrameRequest& request, TemporalHistory& history) {
-  return window_ ? window_->render(request, history) : renderer_.render(request, history, light_);
-}
-
-TracedFrame SequenceRenderer::trace(const FrameRequest& request) {
-  return renderer_.trace(request, light_);
-}
-
-RenderedFrame SequenceRenderer::finish(const FrameRequest& request, TracedFrame traced,
-                                       TemporalHistory& history) const {
-  return renderer_.finish(request, std::move(traced), history);
+RenderedFrame SequenceRenderer::render(const FrameRequest& request) {
+  return window_ ? window_->render(request) : renderer_.render(request, light_);
 }
 
 }  // namespace gazetrace

@@ -19,11 +19,7 @@ class SequenceRenderer {
   SequenceRenderer(const SequenceRenderer&) = delete;
   SequenceRenderer& operator=(const SequenceRenderer&) = delete;
 
-  // `history` is as for FrameRenderer::render().
-  RenderedFrame render(const FrameRequest& request, TemporalHistory& history);
-  // The two halves of a frame by itself.
-  TracedFrame trace(const FrameRequest& request);
-  [[nodiscard]] RenderedFrame finish(const FrameRequest& request, TracedFrame traced, TemporalHistory& history) const;
+  RenderedFrame render(const FrameRequest& request);
 
  private:
   const FrameRenderer renderer_;

@@ -228,11 +228,4 @@ bool has_frame(const CameraPath& camera, const PlanSettings& settings, std::int6
   return t_ns && covers(camera, *t_ns);
 }
 
-void join_plan(FramePlan& plan, std::int32_t frame_before, const GazeLog& log, const PlanSettings& settings) {
-  if (!plan.frames.empty()) {
-    say_what_the_eye_did(plan.frames.front(), frame_before, GazeMotion(&log, settings), log,
-                         with_clock(&log, settings));
-  }
-}
-
 }  // namespace gazetrace

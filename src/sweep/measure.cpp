@@ -94,9 +94,6 @@ PipelineSettings settings_of(const PlannedRow& row, int repeat) {
   PipelineSettings settings = row.pipeline;
   settings.trace.seed += static_cast<std::uint64_t>(repeat);
   settings.output = {};
-  settings.checkpoint.clear();
-  settings.resume_from.clear();
-  settings.preroll = 0;
   return settings;
 }
 

@@ -100,7 +100,7 @@ std::string record_path(const CertifiedReference& certified, std::int32_t frame)
   return frame_file_name(certified.directory + "/frame.####.json", frame);
 }
 
-// The exposures of frames that are finished. Where frames depend on each other, it is all or none.
+// The exposures of frames that are finished.
 std::map<std::int32_t, double> finished_frames(const CertifiedReference& certified, const SweepReference& reference) {
   std::map<std::int32_t, double> ev;
   for (const FrameRequest& request : reference.plan.frames) {
@@ -108,15 +108,12 @@ std::map<std::int32_t, double> finished_frames(const CertifiedReference& certifi
       ev[request.frame] = *kept;
     }
   }
-  return uses_history(reference.pipeline) && ev.size() != reference.plan.frames.size()
-             ? std::map<std::int32_t, double>()
-             : ev;
+  return ev;
 }
 
 // A frame between two pictures shows the earlier one. What is finished already stays.
 void average_frames(const SweepReference& reference, const std::vector<std::int32_t>& pictures,
                     const ColorPipeline& color, const std::string& sweep_directory, CertifiedReference& certified) {
-  TemporalHistory history;
   const std::size_t half = reference.seeds.size() / 2;
   const int threads = reference.pipeline.threads;
   std::array<ImageRgb, 2> halves;
@@ -143,7 +140,7 @@ void average_frames(const SweepReference& reference, const std::vector<std::int3
     }
     Frame mean;
     mean.radiance = mean_of_two(halves[0], halves[1]);
-    const double ev = choose_exposure_ev(mean.radiance, request.t_video_ns, reference.pipeline.exposure, history);
+    const double ev = choose_exposure_ev(mean.radiance, reference.pipeline.exposure);
     certified.ev[frame] = ev;
     FrameHeader header;
     header.frame = frame;
@@ -199,7 +196,7 @@ struct ReferenceTask {
   const SweepObserver& observer;
 };
 
-// What one process renders at a time: a picture of a scrambling, or all of them where they depend on each other.
+// What one process renders at a time: a picture of a scrambling.
 struct ScramblingPart {
   std::size_t scrambling = 0;
   std::vector<std::int32_t> pictures;
@@ -207,10 +204,6 @@ struct ScramblingPart {
 std::vector<ScramblingPart> parts_of(const ReferenceTask& task) {
   std::vector<ScramblingPart> parts;
   for (std::size_t k = 0; k < task.reference.seeds.size(); ++k) {
-    if (uses_history(task.reference.pipeline)) {
-      parts.push_back({k, task.pictures});
-      continue;
-    }
     for (const std::int32_t picture : task.pictures) {
       parts.push_back({k, {picture}});
     }

@@ -26,7 +26,7 @@ std::string reference_folder(const SweepReference& reference);  // within the sw
 // The frames of a reference that are rendered: all of them, or only the first where neither camera nor scene moves.
 // Then that one picture stands for every frame of the clip.
 std::vector<std::int32_t> reference_pictures(const SweepReference& reference, const Scene& scene);
-// Whether reference_pictures() depends on the scene: where all frames have the same view and no history.
+// Whether reference_pictures() depends on the scene: where all frames have the same view.
 bool scene_decides_pictures(const SweepReference& reference);
 FramePlan only_frames(const FramePlan& plan,
                       const std::vector<std::int32_t>& frames);  // the part of the plan with these frames

@@ -19,9 +19,9 @@ bool is_of_sampling_or_gaze(const Option& option) {
   return option.touches.has(Touch::sampling) || option.touches.has(Touch::gaze);
 }
 
-// Options about samples after they were traced. A reference has neither a filter nor a history.
+// Options about samples after they were traced. A reference has neither a filter nor a window.
 bool is_after_sampling(const Option& option) {
-  return option.touches.has(Touch::filter) || option.touches.has(Touch::history);
+  return option.touches.has(Touch::filter) || option.touches.has(Touch::window);
 }
 
 void assign(Job& job, const std::vector<Assignment>& options, const JobSchema& schema,

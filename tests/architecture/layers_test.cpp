@@ -46,7 +46,6 @@ const std::set<std::pair<std::string, std::string>> sideways = {
     {"gaze", "display"},          // gaze on a display is an angle
     {"camera", "display"},        // a camera's image plane is a view
     {"temporal", "reconstruct"},  // accumulates frames
-    {"color", "temporal"},        // smoothed exposure is history
     {"output", "color"},          // writes display images
     {"output", "reconstruct"},    // writes frames
     {"visible", "metrics"},       // predicts what a metric will measure
@@ -74,9 +73,7 @@ const std::map<std::string, std::vector<std::string>> public_headers = {
     {"output", {"aovs", "cryptomatte", "frame_layers", "output"}},
     {"metrics", {"metrics", "fovvideovdp", "flicker"}},
     {"visible", {"visible_error", "model_gain"}},
-    {"pipeline",
-     {"build_info", "checkpoint", "frame_renderer", "input_digest", "merge_means", "output_lock", "pipeline",
-      "traced_frame_file"}},
+    {"pipeline", {"build_info", "frame_renderer", "input_digest", "merge_means", "output_lock", "pipeline"}},
     {"compare", {"compare"}},
     {"results", {"results"}},
     {"job",

@@ -81,8 +81,7 @@ int main(int argc, char** argv) {
   const FrameHeader header;
 
   ExposureSettings exposure{ExposureMode::log_average};
-  TemporalHistory history;
-  const double ev = choose_exposure_ev(frame.radiance, 0, exposure, history);
+  const double ev = choose_exposure_ev(frame.radiance, exposure);
   const auto row = [&](const std::string& stage, double ms, const std::string& path = {}) {
     fmt::print("{:<44} {:8.1f}", stage, ms / megapixels);
     if (!path.empty()) {
@@ -93,7 +92,7 @@ int main(int argc, char** argv) {
   };
   fmt::print("{} x {}, exposure {:.2f} EV\n{:<44} {:>8} {:>8}\n", width, height, ev, "", "ms/MP", "MB/MP");
 
-  double sum = cpu_ms([&] { choose_exposure_ev(frame.radiance, 0, exposure, history); });
+  double sum = cpu_ms([&] { choose_exposure_ev(frame.radiance, exposure); });
   row("exposure, log-average", sum);
 
   DisplayImage shown;

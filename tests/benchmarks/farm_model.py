@@ -8,8 +8,7 @@
 The model plays a farm through: N nodes take chunks from a queue in order. A chunk costs a start (the program begins, reads
 its scene from a disk that all nodes share, and builds its tree) and its frames, whose costs are spread log-normally. A node
 fails after an exponentially distributed time; the chunk then loses the frame in hand, waits for the queue and starts again.
-In the end one machine joins: `merge` reads every file once, or the second stage of frames with history takes its time for
-every frame, which no number of nodes shortens. Chunks shorter than the best one pay more starts, longer ones leave nodes
+In the end one machine joins: `merge` reads every file once. Chunks shorter than the best one pay more starts, longer ones leave nodes
 without work at the end and lose more when one fails."""
 
 import argparse
@@ -36,7 +35,6 @@ class Farm:
     failures_per_node_hour: float = 1 / 720  # one a month
     requeue_s: float = 120  # Slurm's
     merge_s_per_frame: float = 0.02
-    finish_s_per_frame: float = 0.0  # of a farm that traces first
     nodes: int = 100
 
 
@@ -67,7 +65,7 @@ def completion_s(farm, chunk_frames, seed=0):
             at = fails + farm.requeue_s  # the node is back when the queue sees it
         heapq.heappush(free, at)
         last = max(last, at)
-    return last + farm.frames * (farm.merge_s_per_frame + farm.finish_s_per_frame)
+    return last + farm.frames * farm.merge_s_per_frame
 
 
 def best_chunk(farm):
@@ -82,15 +80,12 @@ def best_chunk(farm):
 
 def table():
     print("10,000 frames of 60 s (spread 30 %), a scene of 1 GB from a disk of 1 GB/s, start 10 s, one failure a node and month\n")
-    print("| nodes | frames in a chunk | hours | speed-up | part of N | with history: hours | speed-up |\n| --- | --- | --- | --- | --- | --- | --- |")
+    print("| nodes | frames in a chunk | hours | speed-up | part of N |\n| --- | --- | --- | --- | --- |")
     one = completion_s(replace(Farm(), nodes=1, failures_per_node_hour=0), 10_000)
     for nodes in (10, 30, 100, 300, 1000, 3000, 10_000):
         farm = replace(Farm(), nodes=nodes)
         chunk, seconds = best_chunk(farm)
-        # A finish of 0.6 s a frame: a hundredth of what a frame takes.
-        _, exact_s = best_chunk(replace(farm, finish_s_per_frame=0.6, merge_s_per_frame=0))
-        print(f"| {nodes} | {chunk} | {seconds / 3600:.2f} | {one / seconds:.0f} | {one / seconds / nodes:.0%} | "
-              f"{exact_s / 3600:.2f} | {one / exact_s:.0f} |", flush=True)
+        print(f"| {nodes} | {chunk} | {seconds / 3600:.2f} | {one / seconds:.0f} | {one / seconds / nodes:.0%} |", flush=True)
 
 
 def measure(frames, size):

@@ -254,9 +254,6 @@ def others():
     yield "plan: a grid of 10^8 rows", {**box, "plan.toml": '[[scene]]\nname = "a"\npath = "box.gltf"\n[[gaze]]\nname = "m"\n'
                                         'at = [0.5, 0.5]\n[grid]\n' + grid}, ["sweep", "plan.toml", "-o", "s"]
     yield "map: a picture of nothing", {**box, "map.exr": b"v/1\1" + b"\0" * 200}, [*render, "--density", "map.exr"]
-    history = ["--exposure", "auto", "--exposure-smoothing", "1s", "--frames", "2", "--chunk", "1/1", "--resume-from", "history"]
-    yield "checkpoint: zeros", {**box, "history": b"\0" * 10_000_000}, ["render", "box.gltf", "--size", "32x18", "-o", "out/f.####.exr", *history]
-    yield "checkpoint: its first line alone", {**box, "history": b"gazetrace history 3, 00\n"}, ["render", "box.gltf", "--size", "32x18", "-o", "out/f.####.exr", *history]
     yield "record: frames 1-2000000000", {"out/f.timing.1-2.csv": "", "out/f.run.1-2.json": json.dumps({"frames": "1-2000000000"})}, ["merge", "out"]
     yield "record: 100,000 arrays deep", {"out/f.timing.1-2.csv": "", "out/f.run.1-2.json": "[" * 100_000}, ["merge", "out"]
     yield "table: a line of 20 MB", {"out/f.timing.1-2.csv": "1" * 20_000_000, "out/f.run.1-2.json": "{}"}, ["merge", "out"]

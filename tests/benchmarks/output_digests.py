@@ -50,7 +50,6 @@ RENDERS = {
     "accumulate-past": [*WALK, *SMALL, "--accumulate", "window", "--accumulate-future", "0s"],
     "accumulate-at-rest": [*COURTYARD, "--camera", "still", "--gaze", "gazelogs/tx300_left.csv", "--size", "96x54",
                            "--fps", "10", "--frames", "1-4", *SMALL, "--accumulate", "window"],
-    "exposure-smoothing": [*WALK, *SMALL, "--exposure-smoothing", "500ms", "--checkpoint", "{out}/history.bin"],
     "motion-blur": [*WALK, *SMALL, "--shutter", "180deg"],
     "lens": [*STILL, *GAZE_AT, *SMALL, "--aperture", "f/1.4", "--focus-distance", "4"],
     "gaze-linear-latency": [*WALK, *SMALL, "--gaze-mode", "linear", "--gaze-latency", "60ms", "--gaze-process",

@@ -114,8 +114,7 @@ int run(int argc, char** argv) {
   }
   const auto render = [&](FrameSettings settings, std::uint64_t seed) {
     settings.trace.seed = seed;
-    TemporalHistory history;
-    return FrameRenderer(tracer, settings).render(request, history);
+    return FrameRenderer(tracer, settings).render(request);
   };
   FrameSettings settings = resolved.pipeline;
   settings.foveation.sampling = UniformSampling{};

@@ -4,8 +4,7 @@
 
     GAZETRACE=build/bin/gazetrace python3 tests/benchmarks/soak.py --seconds 3600 --seed 1
 
-Every round takes a way to render a short sequence (one run, one with history and checkpoints, chunks, chunks that are
-traced first, a farm of this machine) or to measure a sweep (by one process, and in chunks), and harms it
+Every round takes a way to render a short sequence (one run, chunks, a farm of this machine) or to measure a sweep (by one process, and in chunks), and harms it
 several times: signals at random moments, files that are cut, changed, swapped or removed, a folder that is removed, a disk
 that is full, inputs that change. After every fault each file under a final name must be a whole one, unless this script damaged
 it, and what `merge` accepts must be right. In the end the way is gone to its end, by --resume where there is that, and the
@@ -34,7 +33,6 @@ from farm_test import SWEEP_TOML  # noqa: E402
 from sweep_chunks_test import TIMES  # noqa: E402
 
 FRAMES = 6
-HISTORY = 'exposure = "auto"\nexposure-smoothing = "1s"\nfilter = "guided"\n'
 RENDER = ["render", "--config", "job.toml", "--resume", "--quiet", "--grace", "50ms"]
 
 
@@ -44,7 +42,7 @@ SWEEP = SWEEP_TOML.replace("repeats = 1", 'repeats = 1\nbaselines = ["uniform-re
 class Way:
     """How a sequence is rendered: steps in order, each of which can be done again, and what is added to the job."""
 
-    sides = ("f.run*.json", "f.timing*.csv", "f.run*.files", "history", "chunks*.json")  # files beside the pictures
+    sides = ("f.run*.json", "f.timing*.csv", "f.run*.files", "chunks*.json")  # files beside the pictures
 
     def __init__(self, name, more, steps):
         self.name, self.more, self.steps = name, more, steps
@@ -95,14 +93,11 @@ class SweepWay(Way):
 
 def ways():
     chunks = [[*RENDER, "--chunk", f"{number}/3"] for number in (1, 2, 3)]
-    traced = [[*chunk, "--stage", "trace"] for chunk in chunks]
     sweep = ["sweep", "plan.toml", "-o", "out", "--quiet"]
     return [
         Way("one run", "", [RENDER]),
-        Way("with history", HISTORY + 'checkpoint = "out/history"\ncheckpoint-every = 2\n', [RENDER]),
         Way("chunks", "", [*chunks, ["merge", "out", "--overwrite"]]),
-        Way("traced first", HISTORY, [*traced, [*RENDER, "--stage", "finish"]]),
-        Way("local farm", HISTORY, [["farm", "farm.toml", "--chunks", "2", "--processes", "2", "--threads", "1", "--retries", "2"]]),
+        Way("local farm", "", [["farm", "farm.toml", "--chunks", "2", "--processes", "2", "--threads", "1", "--retries", "2"]]),
         SweepWay("sweep", "", [sweep]),
         SweepWay("sweep in chunks", "", [[*sweep, "--chunk", "1/2"], [*sweep, "--chunk", "2/2"], ["sweep", "merge", "plan.toml", "-o", "out"]]),
     ]

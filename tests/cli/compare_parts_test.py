@@ -65,17 +65,6 @@ class CompareParts(harness.CliTest):
         self.run_ok("merge", "parts")
         self.assert_compared_as_one("whole", "parts")
 
-    def test_parts_joined_by_their_history(self):
-        history = ["--exposure", "auto", "--exposure-smoothing", "0.5s"]
-        self.more = ["--anyway"]  # the reference has another exposure
-        self.render("whole", "--frames", "1-4", *history)
-        self.render("parts", "--frames", "1-2", "--chunk", "1/1", *history, "--checkpoint", "history.bin")
-        self.render("parts", "--frames", "3-4", "--chunk", "1/1", *history, "--resume-from", "history.bin")
-        self.run_ok("merge", "parts")
-        record = json.loads((self.folder / "parts/p.run.json").read_text())
-        self.assertEqual(record["part_digests"], [], "parts of one job have one digest")
-        self.assert_compared_as_one("whole", "parts")
-
     def test_pictures_of_another_run_are_not_the_record_s(self):
         for frames in ("3-4", "1-2"):
             self.render("parts", "--frames", frames, "--chunk", "1/1")

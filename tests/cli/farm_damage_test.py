@@ -3,14 +3,13 @@
 
 import csv
 import json
-import shutil
 import signal
 import subprocess
 import time
 
 import harness
 from farm_faults_test import Farm
-from farm_test import FARM_TOML, HISTORY_TOML, SWEEP_TOML
+from farm_test import FARM_TOML, SWEEP_TOML
 from gliding_job import write_inputs
 from sweep_chunks_test import TIMES
 
@@ -37,27 +36,24 @@ class DamagedFarm(Farm):
         return [task["state"] for task in status["tasks"]]
 
     def test_it_is_seen_and_made_again(self):
-        for job, text in (("merged", FARM_TOML), ("finished", HISTORY_TOML)):
-            with self.subTest(job):
-                shutil.rmtree(self.folder / "out", ignore_errors=True)
-                self.write("job.toml", text)
-                farm = ("farm", "job.toml", "--chunks", "3", "--processes", "2", "--threads", "1", "--then", "echo made >> film.txt")
-                self.run_ok(*farm)
-                whole = self.pictures("out")
-                table = (self.folder / "out/f.timing.csv").read_text().splitlines()
-                for name, harm, is_seen_by_size in (("f.0003.exr", cut, True), ("f.0005.png", remove, True), ("f.0004.exr", flip, False),
-                                                    ("f.timing.csv", cut, True), ("f.run.json", remove, True)):
-                    with self.subTest(name):
-                        harm(self.folder / "out" / name)
-                        self.assertEqual(set(self.states()) != {"done"}, is_seen_by_size)
-                        (self.folder / "film.txt").unlink()
-                        again = farm if harm is cut else ("farm", "retry", "out")
-                        self.run_ok(*again)
-                        self.assertEqual((self.folder / "film.txt").read_text(), "made\n")
-                        self.assertEqual(self.pictures("out"), whole)
-                        rows = (self.folder / "out/f.timing.csv").read_text().splitlines()
-                        self.assertEqual([row.split(",")[0] for row in rows], [row.split(",")[0] for row in table])
-                        self.assertEqual(set(self.states()), {"done"})
+        self.write("job.toml", FARM_TOML)
+        farm = ("farm", "job.toml", "--chunks", "3", "--processes", "2", "--threads", "1", "--then", "echo made >> film.txt")
+        self.run_ok(*farm)
+        whole = self.pictures("out")
+        table = (self.folder / "out/f.timing.csv").read_text().splitlines()
+        for name, harm, is_seen_by_size in (("f.0003.exr", cut, True), ("f.0005.png", remove, True), ("f.0004.exr", flip, False),
+                                            ("f.timing.csv", cut, True), ("f.run.json", remove, True)):
+            with self.subTest(name):
+                harm(self.folder / "out" / name)
+                self.assertEqual(set(self.states()) != {"done"}, is_seen_by_size)
+                (self.folder / "film.txt").unlink()
+                again = farm if harm is cut else ("farm", "retry", "out")
+                self.run_ok(*again)
+                self.assertEqual((self.folder / "film.txt").read_text(), "made\n")
+                self.assertEqual(self.pictures("out"), whole)
+                rows = (self.folder / "out/f.timing.csv").read_text().splitlines()
+                self.assertEqual([row.split(",")[0] for row in rows], [row.split(",")[0] for row in table])
+                self.assertEqual(set(self.states()), {"done"})
 
 
 class DamagedSweep(harness.CliTest):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Farms on real engines: one node of Slurm, and the reference implementation of Open Job Description. Frames depend on
-those before them, tasks are killed, put back into the queue and canceled while they are held at work, the node is drained
+"""Farms on real engines: one node of Slurm, and the reference implementation of Open Job Description. Tasks are
+killed, put back into the queue and canceled while they are held at work, the node is drained
 and brought back; what comes out are the bits of one run. By hand for more, with the processor time of every attempt: GAZETRACE_FARM_FRAMES=200
 GAZETRACE_FARM_CHUNKS=8 GAZETRACE_FARM_SEED=1 GAZETRACE_FARM_SIZE=192x108 GAZETRACE_FARM_SAMPLES="256, 128, 64"."""
 
@@ -32,14 +32,12 @@ RETRIES_AT_ONCE = SEED % 2 == 1  # else once Slurm has canceled what depends on 
 WANTED = max(2, round(0.25 * CHUNKS))  # so many chunks are killed or put back
 DEADLINE_S = 36000 if BY_HAND else 500  # nothing is asserted of times; a queue that stands still must end some time
 
-HISTORY = 'exposure = "auto"\nexposure-smoothing = "0.5s"\nfilter = "guided"\n'
-
 
 class RealEngines(harness.CliTest):
     def setUp(self):
         super().setUp()
         write_inputs(self.folder, FRAMES / 24 + 1)
-        self.write("farm.toml", job_toml(SIZE, SAMPLES, FRAMES, "out", HISTORY))
+        self.write("farm.toml", job_toml(SIZE, SAMPLES, FRAMES, "out"))
         self.random = random.Random(SEED)
         self.attempts = Attempts(self.folder / "attempts.jsonl")
         print(f"seed {SEED}: {FRAMES} frames of {SIZE} in {CHUNKS} chunks", flush=True)
@@ -89,16 +87,13 @@ class RealEngines(harness.CliTest):
         """What the attempts took beside one run, and what the serial rest leaves of the speed-up."""
         if not BY_HAND:
             return
-        traced, lost = (self.attempts.seconds("trace", is_whole) for is_whole in (True, False))
-        finish = sum(self.attempts.seconds("finish", True))
-        size = sum(path.stat().st_size for path in (self.folder / "out").glob("*traced.*"))
-        both = sum(traced) + finish
-        print(f"CPU: one run {self.whole_cpu_s:.1f} s; {len(traced)} attempts that traced to the end {sum(traced):.1f} s (longest "
-              f"{max(traced):.1f} s), finish {finish:.1f} s, together {100 * (both / self.whole_cpu_s - 1):+.1f} %; apart from "
+        chunks, lost = (self.attempts.seconds("--chunk", is_whole) for is_whole in (True, False))
+        merge = sum(self.attempts.seconds("merge", True))
+        both = sum(chunks) + merge
+        print(f"CPU: one run {self.whole_cpu_s:.1f} s; {len(chunks)} attempts that came to their end {sum(chunks):.1f} s (longest "
+              f"{max(chunks):.1f} s), merge {merge:.1f} s, together {100 * (both / self.whole_cpu_s - 1):+.1f} %; apart from "
               f"that {len(lost)} attempts that were ended {sum(lost):.1f} s. Speed-up of {CHUNKS} machines "
-              f"{self.whole_cpu_s / (max(traced) + finish):.1f}, by the model "
-              f"{self.whole_cpu_s / ((self.whole_cpu_s - finish) / CHUNKS + finish):.1f}, of any number at most "
-              f"{self.whole_cpu_s / finish:.1f}. Traced frames {size / 1e6:.1f} MB. {wall_s:.1f} s by the clock.", flush=True)
+              f"{self.whole_cpu_s / (max(chunks) + merge):.1f}. {wall_s:.1f} s by the clock.", flush=True)
 
     @unittest.skipIf(slurm_node.why_not(), "no Slurm: " + slurm_node.why_not())
     def test_slurm(self):

@@ -156,22 +156,12 @@ class ResumeLosesNothing(Farm):
         (self.folder / "out/f.run.json").unlink()
         self.assert_refused([*again, "--seed", "4"], ["2 finished frames", "no record"])
 
-    def test_another_history_is_another_picture(self):
-        history = ["--exposure", "auto", "--exposure-smoothing", "0.5s", "--chunk", "1/1"]
-        self.render("out", "--frames", "1-2", *history, "--checkpoint", "after-2")
-        self.render("out", "--frames", "3-4", *history)
-        joined = ["render", *JOB, *outputs("out"), "--frames", "3-4", *history, "--resume-from", "after-2", "--resume"]
-        self.assert_refused(joined, ["2 finished frames, 3-4", "after-2 was not read then"])
-        self.run_ok(*joined, "--overwrite")
-        self.run_ok("merge", "out")
-
 
 class DigestsOfParts(Farm):
     def test_how_a_run_was_cut_is_not_in_its_files(self):
-        history = ["--exposure", "auto", "--exposure-smoothing", "0.5s"]
-        self.render("whole", "--frames", "1-6", *history)
-        self.render("parts", "--frames", "1-3", "--chunk", "1/1", *history, "--checkpoint", "h")
-        self.render("parts", "--frames", "4-6", "--chunk", "1/1", *history, "--resume-from", "h")
+        self.render("whole", "--frames", "1-6")
+        for frames in ("1-3", "4-6"):
+            self.render("parts", "--frames", frames, "--chunk", "1/1")
         self.assertEqual(self.pictures("parts"), self.pictures("whole"))
         self.run_ok("merge", "parts")
         whole, parts = self.record("whole/f.run.json"), self.record("parts/f.run.json")
@@ -334,11 +324,10 @@ class Signals(Running):
         return line
 
     def test_each_signal_and_on_to_the_same_bits(self):
-        history = ["--exposure", "auto", "--exposure-smoothing", "0.5s", "--checkpoint", "out/h"]
-        self.run_ok("render", *JOB, *outputs("whole"), *self.LONG, "--exposure", "auto", "--exposure-smoothing", "0.5s")
+        self.run_ok("render", *JOB, *outputs("whole"), *self.LONG)
         for count, number in enumerate((signal.SIGTERM, signal.SIGUSR1, signal.SIGINT, signal.SIGXCPU)):
             ready = self.folder / f"out/f.{2 + 3 * count:04d}.exr"
-            line = self.interrupt(ready.exists, number, *self.LONG, *history, *(["--resume"] if count else []))
+            line = self.interrupt(ready.exists, number, *self.LONG, *(["--resume"] if count else []))
             self.assertIn(f"signal {number.name[3:]}", line)
             record = self.record("out/f.run.json")
             done = len(list((self.folder / "out").glob("f.*.exr")))
@@ -346,7 +335,7 @@ class Signals(Running):
             self.assertEqual(len(record["files"]), 2 * done)
             self.assertEqual(list(self.rows("out/f.timing.csv")), list(range(1, done + 1)))
             self.assertEqual(sorted(name for name in self.files("out") if name.endswith((".lock", ".files"))), [])
-        result = self.run_ok("render", *JOB, *outputs("out"), *self.LONG, *history, "--resume", "--json")
+        result = self.run_ok("render", *JOB, *outputs("out"), *self.LONG, "--resume", "--json")
         summary = json.loads(result.stdout)
         self.assertFalse(summary["interrupted"])
         self.assertGreater(summary["skipped"], 0)

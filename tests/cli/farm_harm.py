@@ -31,9 +31,9 @@ class Attempts:
     def all(self):
         return [json.loads(line) for line in self.path.read_text().splitlines()] if self.path.exists() else []
 
-    def seconds(self, stage, is_whole):
-        """Of the attempts that trace (or finish), those that ended in order or those that did not."""
-        return [attempt["cpu_s"] for attempt in self.all() if stage in attempt["command"] and (attempt["code"] == 0) == is_whole]
+    def seconds(self, word, is_whole):
+        """Of the attempts with this word in their command, those that ended in order or those that did not."""
+        return [attempt["cpu_s"] for attempt in self.all() if word in attempt["command"] and (attempt["code"] == 0) == is_whole]
 
     def hold(self, chunk, seconds):
         """The next attempt at this chunk stands still once it has run for so long, until it is told to end."""

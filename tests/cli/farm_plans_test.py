@@ -7,7 +7,7 @@ import shutil
 import subprocess
 
 import harness
-from farm_test import FARM_TOML, HISTORY_TOML, FarmFiles
+from farm_test import FARM_TOML, FarmFiles
 
 
 class Plans(FarmFiles):
@@ -77,14 +77,11 @@ class Plans(FarmFiles):
 
     def test_what_follows_has_a_limit_of_its_own(self):
         time = ("--chunks", "3", "--time", "100min", "--then", "true")
-        for job, finish, minutes in (("farm.toml", "merge", 100), ("history.toml", "--max-time 17940s", 300)):
-            with self.subTest(job):
-                self.farm("--engine", "slurm", *time, "--retries", "0", job=job)
-                script = (self.folder / "out/farm/task.sh").read_text()
-                self.assertIn("--max-time 5940s", script)
-                self.assertIn(finish, script)
-                self.assertIn("#SBATCH --time=100\n", (self.folder / "out/farm/task.sbatch").read_text())
-                self.assertIn(f"time_after=--time={minutes}\n", (self.folder / "out/farm/submit.sh").read_text())
+        self.farm("--engine", "slurm", *time, "--retries", "0")
+        script = (self.folder / "out/farm/task.sh").read_text()
+        self.assertIn("--max-time 5940s", script)
+        self.assertIn("#SBATCH --time=100\n", (self.folder / "out/farm/task.sbatch").read_text())
+        self.assertIn("time_after=--time=100\n", (self.folder / "out/farm/submit.sh").read_text())
         self.farm("--engine", "openjd", *time)
         steps = json.loads((self.folder / "out/farm/template.json").read_text())["steps"]
         self.assertEqual([step["script"]["actions"]["onRun"]["timeout"] for step in steps], [6000, 6000, 6000])
@@ -109,10 +106,10 @@ class Plans(FarmFiles):
         self.assertIn("glide.gltf", refused.stderr)
         for name in ("glide.gltf", "log.csv"):
             shutil.copy(self.folder / name, self.folder / "job")
-        self.write("job/farm.toml", HISTORY_TOML.replace('"out/', '"job/out/'))
+        self.write("job/farm.toml", FARM_TOML.replace('"out/', '"job/out/'))
         self.farm("--confine", "--engine", "slurm", "--chunks", "2", job="job/farm.toml")
         script = next(self.folder.rglob("task.sh")).read_text()
-        self.assertEqual(script.count(" --confine"), 2)  # of the chunks, and of what finishes them
+        self.assertEqual(script.count(" --confine"), 1)
 
     def test_names_that_cannot_be_kept(self):
         odd = os.fsencode(self.folder) + b"/odd\xff"

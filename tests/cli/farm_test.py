@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Farms: frames that are traced by many and finished by one, borders of chunks, and the tasks of every engine."""
+"""Farms: borders of chunks, and the tasks of every engine."""
 
 import json
 import os
@@ -9,99 +9,11 @@ import subprocess
 import time
 
 import harness
-from farm_faults_test import JOB_TOML, Farm
+from farm_faults_test import Farm
 from farm_harm import renderers
 from gliding_job import job_toml, processes_in
 
-HISTORY = ["--exposure", "auto", "--exposure-smoothing", "0.5s", "--filter", "guided"]
 FRAMES = ["--frames", "1-6"]
-
-
-class TracedFirst(Farm):
-    history = HISTORY
-
-    def trace(self, folder, *more):
-        return self.run_ok("render", "--config", "job.toml", *self.history, *FRAMES, "-o", f"{folder}/f.####.exr", "-o",
-                           f"{folder}/f.####.png", "--stage", "trace", *more)
-
-    def finish(self, folder, *more, program=None):
-        run = program or self.run_ok
-        return run("render", "--config", "job.toml", *self.history, *FRAMES, "-o", f"{folder}/f.####.exr", "-o",
-                   f"{folder}/f.####.png", "--stage", "finish", *more)
-
-    def whole(self):
-        self.render("whole", *self.history, *FRAMES)
-        return self.pictures("whole")
-
-    def test_the_bits_are_those_of_one_run(self):
-        whole = self.whole()
-        for number in (2, 3, 1):
-            self.trace("out", "--chunk", f"{number}/3")
-        self.assertEqual(self.pictures("out"), {})
-        self.assertEqual(sum(name.endswith(".sparse") for name in self.files("out")), 6)
-        self.finish("out")
-        self.assertEqual(self.pictures("out"), whole)
-        # The table of the whole counts what tracing took, wherever that was.
-        one, two = self.rows("whole/f.timing.csv"), self.rows("out/f.timing.csv")
-        self.assertEqual([row["samples"] for row in one.values()], [row["samples"] for row in two.values()])
-        self.assertTrue(all(float(row["trace_ms"]) > 0 for row in two.values()))
-
-    def test_samples_that_follow_the_picture(self):
-        for self.history in ([*HISTORY, "--density", "linear"],
-                             [*HISTORY, "--sampling", "adaptive", "--spp", "8"]):
-            with self.subTest(self.history):
-                for folder in ("whole", "out"):
-                    shutil.rmtree(self.folder / folder, ignore_errors=True)
-                for number in (1, 2):
-                    self.trace("out", "--chunk", f"{number}/2")
-                self.finish("out")
-                self.assertEqual(self.pictures("out"), self.whole())
-
-    def test_a_run_that_finishes_goes_on(self):
-        whole = self.whole()
-        self.trace("out")
-        early = self.finish("out", "--max-time", "0s", program=self.run_program)
-        self.assertEqual(early.returncode, 4, early.stderr)
-        self.finish("out", "--resume")
-        (self.folder / "out/f.0003.png").unlink()
-        self.finish("out", "--resume")
-        self.assertEqual(self.pictures("out"), whole)
-
-    def test_frames_that_are_not_traced_are_named(self):
-        self.trace("out", "--chunk", "1/2")
-        self.assertIn("3 frames are not traced under these settings: 4-6",
-                      self.finish("out", program=self.run_program).stderr)
-        self.trace("out", "--chunk", "2/2")
-        shutil.copyfile(self.folder / "out/f.traced.0005.sparse", self.folder / "out/f.traced.0006.sparse")
-        self.assertIn("f.traced.0006.sparse: holds frame 5", self.finish("out", "--resume", program=self.run_program).stderr)
-        # Cut within the line that says under which settings it was made, and that line changed: damaged, not another's.
-        first = self.folder / "out/f.traced.0001.sparse"
-        content = first.read_bytes()
-        line = content.index(b"\n")
-        for broken in (content[:line - 5], content[:line - 1] + bytes([content[line - 1] ^ 1]) + content[line:]):
-            first.write_bytes(broken)
-            self.trace("out", "--chunk", "1/2", "--resume")
-            self.assertEqual(first.read_bytes()[:line], content[:line])
-        damaged = self.folder / "out/f.traced.0002.sparse"
-        damaged.write_bytes(damaged.read_bytes()[:-5])
-        again = self.finish("out", "--resume", program=self.run_program)
-        self.assertEqual(again.returncode, 2)
-        self.assertIn("f.traced.0002.sparse: the file of a traced frame is damaged", again.stderr)
-        for number in (1, 2):
-            self.trace("out", "--chunk", f"{number}/2", "--resume")
-        self.finish("out", "--resume")
-        self.assertEqual(self.pictures("out"), self.whole())
-
-    def test_what_cannot_be_divided_so(self):
-        for more, words in ((["--accumulate", "window"], "frames read the samples of those around them"),
-                            ([*HISTORY, "--preroll", "2"], "tracing needs no history"),
-                            ([*HISTORY, "--only-pixel", "3,3"], "only one pixel")):
-            refused = self.run_program("render", "--config", "job.toml", *FRAMES, "-o", "out/f.####.exr", "--stage", "trace",
-                                       *more)
-            self.assertEqual(refused.returncode, 2)
-            self.assertIn(words, refused.stderr)
-        self.trace("out")
-        self.assertIn("there are no pictures to join", self.run_program("merge", "out").stderr)
 
 
 class Borders(Farm):
@@ -126,36 +38,6 @@ class Borders(Farm):
         self.chunk(1)
         self.run_ok("render", "--config", "job.toml", "-o", "out/g.####.exr", *FRAMES, "--chunk", "2/3", "--seed", "7")
         self.assertEqual(len(list((self.folder / "out").glob("chunks.3.*.json"))), 2)
-
-
-class OneCheckpoint(Farm):
-    """A run whose checkpoint takes the place of the one that it began from."""
-
-    def part(self, frames, *more, program=None):
-        run = program or self.run_ok
-        return run("render", "--config", "job.toml", *HISTORY, "--frames", frames, "--chunk", "1/1", "-o", "out/f.####.exr", "-o",
-                   "out/f.####.png", "--checkpoint", "out/history", *more)
-
-    def test_it_goes_on_when_it_was_interrupted(self):
-        self.write("job.toml", JOB_TOML.replace("[4, 2, 1]", "[512, 256, 128]"))
-        self.render("whole", *HISTORY, *FRAMES)
-        self.part("1-2")
-        # A checkpoint after every frame is what an interrupted run leaves behind.
-        arguments = ["render", "--config", "job.toml", *HISTORY, "--frames", "3-6", "--chunk", "1/1", "-o", "out/f.####.exr", "-o",
-                     "out/f.####.png", "--checkpoint", "out/history", "--checkpoint-every", "1", "--resume-from", "out/history"]
-        run = subprocess.Popen([harness.PROGRAM, *arguments], cwd=self.folder)
-        while run.poll() is None and not (self.folder / "out/f.0004.exr").exists():
-            time.sleep(0.002)
-        run.send_signal(signal.SIGTERM)
-        self.assertIn(run.wait(), (0, 4))
-        went_on = self.run_program(*arguments, "--resume")
-        self.assertEqual(went_on.returncode, 0, went_on.stderr)
-        self.assertEqual(self.pictures("out"), self.pictures("whole"))
-        self.run_ok(*arguments, "--resume")  # there is nothing left to do
-        (self.folder / "out/f.0003.png").unlink()
-        gone = self.run_program(*arguments, "--resume")
-        self.assertEqual(gone.returncode, 2)
-        self.assertIn("frame 3 must be made again, and the history after frame 2 is gone", gone.stderr)
 
 
 FARM_TOML = job_toml(frames=6, folder="out")
@@ -183,14 +65,12 @@ reference-rate = 8
 metrics = ["mse"]
 controls = false
 """
-HISTORY_TOML = job_toml(frames=6, folder="out", more='exposure = "auto"\nexposure-smoothing = "0.5s"\nfilter = "guided"\n')
 
 
 class FarmFiles(Farm):
     def setUp(self):
         super().setUp()
         self.write("farm.toml", FARM_TOML)
-        self.write("history.toml", HISTORY_TOML)
 
     def farm(self, *arguments, job="farm.toml", program=None):
         return (program or self.run_ok)("farm", job, *arguments)
@@ -229,41 +109,25 @@ class Engines(FarmFiles):
 
     def test_what_follows_is_done_again(self):
         """After frames that are made anew, and where its commands are others."""
-        for job in ("farm.toml", "history.toml"):
-            with self.subTest(job):
-                shutil.rmtree(self.folder / "out", ignore_errors=True)
-                local = ("--chunks", "3", "--processes", "2", "--threads", "1")
-                self.farm(*local, "--then", "echo made >> film.txt", job=job)
-                (self.folder / "film.txt").unlink()
-                (self.folder / "out/f.0003.exr").unlink()
-                for traced in (self.folder / "out").glob("f.traced.0003.*"):
-                    traced.unlink()
-                self.run_ok("farm", "retry", "out")
-                self.assertEqual((self.folder / "film.txt").read_text(), "made\n")
-                self.farm(*local, "--then", "echo other > other.txt", job=job)
-                self.assertEqual((self.folder / "other.txt").read_text(), "other\n")
-                self.assertTrue(self.status()["is_done"])
-
-    def test_local_with_history(self):
-        self.farm("--chunks", "3", "--processes", "2", "--threads", "1", job="history.toml")
-        self.assertIn("farm/history", self.files("out"))
-        self.assertEqual(self.pictures("out"), self.whole("history.toml"))
-        self.assertEqual(self.status()["tasks"][-1]["done"], 6)
-        # What was traced is not needed any more.
-        for path in (self.folder / "out").glob("*traced.*"):
-            path.unlink()
+        local = ("--chunks", "3", "--processes", "2", "--threads", "1")
+        self.farm(*local, "--then", "echo made >> film.txt")
+        (self.folder / "film.txt").unlink()
+        (self.folder / "out/f.0003.exr").unlink()
+        self.run_ok("farm", "retry", "out")
+        self.assertEqual((self.folder / "film.txt").read_text(), "made\n")
+        self.farm(*local, "--then", "echo other > other.txt")
+        self.assertEqual((self.folder / "other.txt").read_text(), "other\n")
         self.assertTrue(self.status()["is_done"])
 
-    def test_a_job_with_a_checkpoint_and_a_name_of_words(self):
-        self.write("my job.toml", HISTORY_TOML + 'checkpoint = "out/history"\n')
+    def test_a_job_with_a_name_of_words(self):
+        self.write("my job.toml", FARM_TOML)
         self.farm("--engine", "slurm", "--chunks", "2", job="my job.toml")
         self.assertIn("#SBATCH --job-name=my_job\n", (self.folder / "out/farm/task.sbatch").read_text())
         for task in ("1-2", "finish"):
             done = subprocess.run(["sh", str(self.folder / "out/farm/task.sh"), task], capture_output=True, check=False)
             self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("history", self.files("out"))
-        self.assertEqual(self.pictures("out"), self.whole("history.toml"))
-        self.write("wrong.toml", FARM_TOML + 'exposure-smoothing = "1s"\nonly-pixel = [3, 3]\n')
+        self.assertEqual(self.pictures("out"), self.whole("farm.toml"))
+        self.write("wrong.toml", FARM_TOML + "only-pixel = [3000, 3]\n")
         refused = self.farm("--chunks", "2", job="wrong.toml", program=self.run_program)
         self.assertEqual(refused.returncode, 2)
 
@@ -356,7 +220,7 @@ class Engines(FarmFiles):
         self.assertIn("chunks='1'", (self.folder / "out/farm/submit.sh").read_text())
 
     def test_files_for_openjd(self):
-        self.farm("--engine", "openjd", "--chunks", "3", job="history.toml")
+        self.farm("--engine", "openjd", "--chunks", "3")
         job = json.loads((self.folder / "out/farm/template.json").read_text())
         self.assertEqual((job["specificationVersion"], job["extensions"]), ("jobtemplate-2023-09", ["TASK_CHUNKING"]))
         chunks, finish = job["steps"]

@@ -88,7 +88,7 @@ class Confined(Farm):
         common = 'scene = "jobs/glide.gltf"\nsize = "32x18"\nscreen-px = "64,36"\nscreen-cm = "64,36"\nscreen-distance-cm = 60\n'
         for more, named in (('gaze = "secret/log.csv"', "gaze"), ('gaze = "jobs/link.csv"', "gaze"),
                             ('env = "secret/log.csv"', "env"), ('output = ["elsewhere/f.####.exr"]', "output"),
-                            ('checkpoint = "jobs/../history"', "checkpoint"), ('density = "secret/log.csv"', "density")):
+                            ('density = "secret/log.csv"', "density")):
             with self.subTest(more):
                 self.write("jobs/job.toml", common + more)
                 self.assert_refused(["plan", "--config", "jobs/job.toml", "--frames", "1", "--confine"], [named, "leads outside"])

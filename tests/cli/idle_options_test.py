@@ -38,7 +38,6 @@ class IdleOptions(harness.CliTest):
             (["--region-eccentricities", "2,5"], ["--density", "mar"]),
             (["--gaze-latency", "20ms"], []),
             (["--exposure-key", "0.3"], []),
-            (["--exposure-smoothing", "1s"], ["--exposure", "1"]),
         ):
             with self.subTest(options=options, others=others):
                 said = self.warnings(*AT, *others, *options)
@@ -52,7 +51,7 @@ class IdleOptions(harness.CliTest):
             ["--density", "mar", "--block-samples", "4", "--max-block", "4"],
             ["--region-samples", "4,4,4"],
             ["--density", "csf:eye=left,luminance=20,relative-to=fovea"],
-            ["--exposure", "auto", "--exposure-key", "0.3", "--exposure-smoothing", "1s"],
+            ["--exposure", "auto", "--exposure-key", "0.3"],
             ["--preset", "paper", "--density", "mar"],  # a preset's settings are not the user's
         ):
             with self.subTest(options=options):

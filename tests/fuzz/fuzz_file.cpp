@@ -49,10 +49,6 @@ bool is_json(const std::string& name) {
          name == "display";
 }
 
-bool is_sealed_kind(const std::string& name) {
-  return name == "checkpoint" || name == "traced";
-}
-
 // New bytes, empty where there is no way of their own for this target and input.
 std::string mutated(std::string_view input, std::uint64_t seed) {
   static const std::vector<std::pair<std::string, std::string>> donors = test::scene_seeds();
@@ -81,14 +77,10 @@ extern "C" int LLVMFuzzerInitialize(int* /*count*/, char*** /*arguments*/) {
 }
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed) {
-  const std::uint64_t spread = hash64(seed);
-  std::string changed = mutated({reinterpret_cast<const char*>(data), size}, spread);
+  std::string changed = mutated({reinterpret_cast<const char*>(data), size}, hash64(seed));
   if (changed.empty() || changed.size() > most) {
     size = LLVMFuzzerMutate(data, size, most);
     changed.assign(reinterpret_cast<const char*>(data), size);
-  }
-  if (is_sealed_kind(target()) && spread % 64 != 0 && changed.size() > 32) {
-    changed = sealed_bytes(changed);
   }
   size = std::min(changed.size(), most);
   std::memcpy(data, changed.data(), size);

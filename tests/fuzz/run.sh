@@ -39,7 +39,7 @@ for target in "${targets[@]}"; do
   # Image libraries leak on damaged files. Of the rest every leak is ours.
   leaks=1
   longest=16384
-  case $target in scene* | picture-*) leaks=0 longest=65536 ;; checkpoint | traced) longest=65536 ;; esac
+  case $target in scene* | picture-*) leaks=0 longest=65536 ;; esac
   code=0
   begin=$(date +%s)
   { time GAZETRACE_FUZZ_READER=$target ASAN_OPTIONS=detect_leaks=$leaks:allocator_may_return_null=0 \

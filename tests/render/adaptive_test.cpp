@@ -75,8 +75,7 @@ TEST(Adaptive, TheMeanOverSeedsIsThatOfUniformFrames) {
       FrameSettings settings = settings_of(arm == 0 ? "uniform" : "adaptive");
       settings.foveation.min_spp = 1;
       settings.trace.seed = static_cast<std::uint64_t>(seed) + 1000 * arm;
-      TemporalHistory none;
-      seen[arm].push_back(luminances(FrameRenderer(tracer, settings).render(request_of(), none).frame));
+      seen[arm].push_back(luminances(FrameRenderer(tracer, settings).render(request_of()).frame));
     }
   }
   std::vector<double> spread(pixels);
@@ -116,8 +115,7 @@ TEST(Adaptive, SameBitsForAnyNumberOfThreads) {
       FrameSettings settings = settings_of("adaptive", filter);
       settings.foveation.target.relmse = 0.02;
       settings.threads = count;
-      TemporalHistory none;
-      frames.push_back(FrameRenderer(tracer, settings).render(request_of(), none));
+      frames.push_back(FrameRenderer(tracer, settings).render(request_of()));
     }
     EXPECT_EQ(frames[0].frame.radiance, frames[1].frame.radiance) << filter;
     EXPECT_EQ(frames[0].prediction.relmse, frames[1].prediction.relmse);
@@ -177,8 +175,7 @@ TEST(Adaptive, WhatATargetPredictsComesOut) {
   FrameSettings fine = settings_of("uniform");
   fine.foveation.spp = 4096;
   fine.trace.seed = 99;
-  TemporalHistory none;
-  const std::vector<double> truth = luminances(FrameRenderer(tracer, fine).render(request_of(), none).frame);
+  const std::vector<double> truth = luminances(FrameRenderer(tracer, fine).render(request_of()).frame);
   double before = 0;
   for (const double target : {0.02, 0.005}) {
     double measured = 0;
@@ -189,7 +186,7 @@ TEST(Adaptive, WhatATargetPredictsComesOut) {
       settings.foveation.spp.reset();
       settings.foveation.target.relmse = target;
       settings.trace.seed = static_cast<std::uint64_t>(seed);
-      const RenderedFrame rendered = FrameRenderer(tracer, settings).render(request_of(), none);
+      const RenderedFrame rendered = FrameRenderer(tracer, settings).render(request_of());
       EXPECT_NEAR(*rendered.prediction.relmse / target, 1, 0.02);
       samples += static_cast<double>(rendered.samples.samples) / kSeeds;
       const std::vector<double> values = luminances(rendered.frame);

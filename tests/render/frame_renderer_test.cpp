@@ -66,8 +66,7 @@ TEST(FrameRenderer, MakesOfAFrameWhatItsStagesMakeOfIt) {
   for (const std::string filter : {"none", "linear", "guided"}) {
     const FrameSettings settings = settings_of(filter);
     PathTracer tracer(scene, threads(2));
-    TemporalHistory history;
-    const RenderedFrame rendered = FrameRenderer(tracer, settings).render(request, history);
+    const RenderedFrame rendered = FrameRenderer(tracer, settings).render(request);
 
     PathTracer other(scene, threads(1));
     const PosedScene by_hand = other.at({request.t_video_ns, request.t_video_ns});
@@ -86,7 +85,6 @@ TEST(FrameRenderer, MakesOfAFrameWhatItsStagesMakeOfIt) {
     EXPECT_EQ(rendered.pilot.samples, 0U);  // the paths that it learns from are none
     EXPECT_GT(rendered.pilot.learning_paths, 0U);
     EXPECT_EQ(rendered.times.guides_ms > 0, filter == "guided");
-    EXPECT_EQ(history.passed, std::vector<std::int32_t>{3});
   }
 }
 
@@ -100,7 +98,6 @@ TEST(FrameRenderer, IsWhatASequenceIsMadeOf) {
   PipelineSettings settings;
   static_cast<FrameSettings&>(settings) = settings_of("guided");
   settings.exposure.mode = ExposureMode::log_average;
-  settings.exposure.smoothing_s = 0.2;
   PathTracer tracer(scene, threads(2));
   std::vector<std::pair<ImageRgb, double>> frames;
   PipelineObserver observer;
@@ -116,16 +113,14 @@ TEST(FrameRenderer, IsWhatASequenceIsMadeOf) {
   const SequenceResult result = render_sequence(tracer, plan, color, settings, observer);
 
   const FrameRenderer renderer(tracer, settings);
-  TemporalHistory history;
   for (std::size_t i = 0; i < plan.frames.size(); ++i) {
-    const RenderedFrame rendered = renderer.render(plan.frames[i], history);
+    const RenderedFrame rendered = renderer.render(plan.frames[i]);
     EXPECT_TRUE(same_picture(rendered.frame.radiance, frames[i].first, std::to_string(i + 1)));
     EXPECT_EQ(rendered.exposure_ev, frames[i].second);
     EXPECT_TRUE(same_picture(rendered.frame.radiance, taken.at(i).frame.radiance, std::to_string(i + 1)));
     EXPECT_EQ(taken[i].map.samples(), rendered.map.samples());
     EXPECT_EQ(rendered.samples.samples + rendered.pilot.samples, result.rows[i].samples);
   }
-  EXPECT_EQ(history.passed, (std::vector<std::int32_t>{1, 2, 3, 4}));
 }
 
 // The pose is that which each frame asks for, whoever else uses the tracer.
@@ -134,17 +129,14 @@ TEST(FrameRenderer, TwoShareATracerAndDoNotMeet) {
   PathTracer tracer(scene, threads(2));
   const FrameRenderer one(tracer, settings_of("linear"));
   const FrameRenderer two(tracer, settings_of("guided"));
-  TemporalHistory alone;
   std::vector<ImageRgb> expected;
   for (std::int32_t frame = 1; frame <= 3; ++frame) {
-    expected.push_back(one.render(request_of(frame), alone).frame.radiance);
+    expected.push_back(one.render(request_of(frame)).frame.radiance);
   }
-  TemporalHistory first;
-  TemporalHistory second;
   for (std::int32_t frame = 1; frame <= 3; ++frame) {
-    const ImageRgb picture = one.render(request_of(frame), first).frame.radiance;
+    const ImageRgb picture = one.render(request_of(frame)).frame.radiance;
     EXPECT_TRUE(same_picture(picture, expected[static_cast<std::size_t>(frame - 1)], std::to_string(frame)));
-    (void)two.render(request_of(7 - frame), second);
+    (void)two.render(request_of(7 - frame));
   }
 }
 

@@ -204,12 +204,10 @@ TEST(LightGroups, LayersAddUpToThePictureUnderEveryFilter) {
     settings.foveation.sampling = density;
     settings.reconstruction.filter = filter.name;
     settings.threads = 2;
-    TemporalHistory none;
-    const RenderedFrame plain = FrameRenderer(tracer, settings).render(request(), none);
+    const RenderedFrame plain = FrameRenderer(tracer, settings).render(request());
     EXPECT_TRUE(plain.layers.light.empty());
     settings.layers.light = true;
-    TemporalHistory other;
-    const RenderedFrame grouped = FrameRenderer(tracer, settings).render(request(), other);
+    const RenderedFrame grouped = FrameRenderer(tracer, settings).render(request());
     EXPECT_EQ(plain.frame.radiance, grouped.frame.radiance) << filter.name;
     ASSERT_EQ(grouped.layers.light.size(), kLightGroups);
     const double worst = worst_difference(
@@ -241,9 +239,8 @@ RenderedFrame third_frame(PathTracer& tracer, AccumulateMode mode, bool light) {
     one.camera = camera_at({0.02 * (frame - 3), 1, 5}, {0, 0, 0});
     frames.push_back(renderer.window_frame(one, learned));
   }
-  TemporalHistory history;
-  return mode == AccumulateMode::window ? renderer.finish({&frames[0], &frames[1], &frames[2]}, 2, history)
-                                        : renderer.finish({&frames[2]}, 0, history);
+  return mode == AccumulateMode::window ? renderer.finish({&frames[0], &frames[1], &frames[2]}, 2)
+                                        : renderer.finish({&frames[2]}, 0);
 }
 
 TEST(LightGroups, LayersAddUpToPicturesThatOtherFramesJoin) {

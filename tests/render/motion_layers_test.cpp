@@ -117,8 +117,7 @@ TEST(MotionLayers, AreFiniteDifferencesOfPlaces) {
   request.view = view_of_perspective(50 * kRadPerDeg, kWidth, kHeight);
   request.before = {camera_then(now_s - 1 / kRate).pose, at(now_s - 1 / kRate)};
   request.after = {camera_then(now_s + 1 / kRate).pose, at(now_s + 1 / kRate)};
-  TemporalHistory none;
-  const RenderedFrame rendered = FrameRenderer(tracer, settings).render(request, none);
+  const RenderedFrame rendered = FrameRenderer(tracer, settings).render(request);
   const MotionLayers& layers = rendered.layers.motion;
   const PosedScene posed = tracer.at({request.t_video_ns, request.t_video_ns});
   const SurfaceMotion seen = posed.surface_motion(request.camera, kWidth, kHeight, {request.camera, at(now_s)});
@@ -180,8 +179,7 @@ TEST(MotionLayers, TheSkyTurnsWithTheCameraAndWhatIsBehindItHasNoMotion) {
   request.before.pose = camera_at({0, 0, 99}, {0, 0, 0}).pose;  // looked the other way
   // Turned up: the sky moves down.
   request.after.pose = camera_at({0, 0, 99}, {0, 1, 199}).pose;
-  TemporalHistory none;
-  const MotionLayers layers = FrameRenderer(tracer, settings).render(request, none).layers.motion;
+  const MotionLayers layers = FrameRenderer(tracer, settings).render(request).layers.motion;
   const double focal_px = kHeight / 2.0 / std::tan(25 * kRadPerDeg);
   EXPECT_NEAR(static_cast<double>(layers.forward_px(kWidth / 2, kHeight / 2).y), -focal_px * 0.01, 0.01);
   EXPECT_EQ(layers.backward_px(kWidth / 2, kHeight / 2), Vec2f());

@@ -90,8 +90,7 @@ FrameSettings job_settings(std::uint64_t seed) {
 }
 
 ImageRgb uniform_picture(PathTracer& tracer, const FrameRequest& request, double spp, std::uint64_t seed) {
-  TemporalHistory none;
-  return FrameRenderer(tracer, raw(settings_of(seed), spp, "none")).render(request, none).frame.radiance;
+  return FrameRenderer(tracer, raw(settings_of(seed), spp, "none")).render(request).frame.radiance;
 }
 
 double mean_luminance(const ImageRgb& picture) {

@@ -252,9 +252,8 @@ TEST(WindowRender, LightThatChangesDoesNotShowInOtherFrames) {
     window.push_back(&frame);
   }
   for (const int own : {5, 6}) {
-    TemporalHistory history;
     const RenderedFrame joined =
-        FrameRenderer(own == 5 ? before : after, settings).finish(window, static_cast<std::size_t>(own - 1), history);
+        FrameRenderer(own == 5 ? before : after, settings).finish(window, static_cast<std::size_t>(own - 1));
     const double expected = mean_of(reference_of(own == 5 ? dark : bright, own, false));
     EXPECT_NEAR(mean_of(joined.frame), expected, 0.03 * expected) << own;
     double samples = 0;

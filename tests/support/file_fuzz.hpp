@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "core/image_io.hpp"
-#include "gazetrace/checkpoint.hpp"
 #include "gazetrace/compare.hpp"
 #include "gazetrace/farm.hpp"
 #include "gazetrace/gaze_aois.hpp"
@@ -23,7 +22,6 @@
 #include "gazetrace/job_schema.hpp"
 #include "gazetrace/resolve.hpp"
 #include "gazetrace/results.hpp"
-#include "gazetrace/traced_frame_file.hpp"
 #include "output/exr.hpp"
 #include "render/tracer_scenes.hpp"
 #include "support/reader_fuzz.hpp"
@@ -35,9 +33,9 @@ namespace gazetrace {
 // that the file gets.
 inline std::vector<std::string> fuzz_files() {
   return {
-      "scene",      "scene-render", "picture-png", "picture-jpg", "picture-exr",   "picture-hdr", "job",
-      "sweep-plan", "checkpoint",   "traced",      "run-record",  "timing",        "parts",       "farm",
-      "chunks",     "results",      "display",     "aois",        "density-curve",
+      "scene",  "scene-render", "picture-png", "picture-jpg", "picture-exr",   "picture-hdr",
+      "job",    "sweep-plan",   "run-record",  "timing",      "parts",         "farm",
+      "chunks", "results",      "display",     "aois",        "density-curve",
   };
 }
 
@@ -47,7 +45,7 @@ namespace fuzz {
 inline constexpr std::uint64_t kSceneBytes = std::uint64_t{192} << 20U;
 inline constexpr const char* kDigest = "0123456789abcdef0123456789abcdef";
 
-// A scene, a frame and settings that checkpoints and traced frames are made with.
+// A frame and settings that scenes are rendered with.
 struct SmallRun {
   Scene scene;
   FrameRequest request;
@@ -66,7 +64,6 @@ struct SmallRun {
     std::get<RegionSampling>(settings.foveation.sampling).samples = {4, 2, 2};
     settings.reconstruction.filter = "guided";
     settings.exposure.mode = ExposureMode::log_average;
-    settings.exposure.smoothing_s = 0.2;
     settings.threads = 1;
   }
 };
@@ -147,8 +144,7 @@ inline void render_scene(Scene scene) {
     run.request.camera.projection = scene.cameras.front().path.projection;
   }
   PathTracer tracer(scene, test::threads(1));
-  TemporalHistory none;
-  const RenderedFrame rendered = FrameRenderer(tracer, run.settings).render(run.request, none);
+  const RenderedFrame rendered = FrameRenderer(tracer, run.settings).render(run.request);
   for (const Vec3f& pixel : rendered.frame.radiance.pixels) {
     require(is_finite(pixel), "every pixel is finite");
   }
@@ -210,29 +206,6 @@ inline void read_job(const std::string& path) {
   check_job(job);
 }
 
-// A frame goes on from the history of the file.
-inline void read_checkpoint(const std::string& path) {
-  TemporalHistory history = load_checkpoint(path, kDigest);
-  SmallRun run;
-  run.request.frame = 3;
-  PathTracer tracer(run.scene, test::threads(1));
-  static_cast<void>(FrameRenderer(tracer, run.settings).render(run.request, history));
-}
-
-inline void read_traced(const std::string& path) {
-  TracedFrame traced = load_traced(path, 1, kDigest);
-  SmallRun run;
-  run.request.width_px = traced.map.width_px;
-  run.request.height_px = traced.map.height_px;
-  if (std::int64_t{run.request.width_px} * run.request.height_px > 65536) {
-    return;  // finishing it would take long, not fail
-  }
-  run.request.view = view_of_perspective(50 * kRadPerDeg, run.request.width_px, run.request.height_px);
-  PathTracer tracer(run.scene, test::threads(1));
-  TemporalHistory history;
-  static_cast<void>(FrameRenderer(tracer, run.settings).finish(run.request, std::move(traced), history));
-}
-
 inline void read_farm_folder(const std::string& folder) {
   const FarmPlan plan = read_farm(folder);
   static_cast<void>(farm_plan_text(plan));
@@ -275,10 +248,6 @@ inline bool read_file(const std::string& target, const std::string& path, std::s
       read_job(path);
     } else if (target == "sweep-plan") {
       static_cast<void>(read_sweep_file(path, job_schema()));
-    } else if (target == "checkpoint") {
-      read_checkpoint(path);
-    } else if (target == "traced") {
-      read_traced(path);
     } else if (target == "run-record") {
       static_cast<void>(job_of_record(read_run_record(path), path));
     } else if (target == "timing") {
@@ -305,8 +274,7 @@ inline bool read_file(const std::string& target, const std::string& path, std::s
 
 }  // namespace fuzz
 
-// True where the bytes were read, false where they were properly refused. A sealed file's seal must be right, see
-// sealed_bytes() in file_seeds.hpp.
+// True where the bytes were read, false where they were properly refused.
 inline bool fuzz_file(const std::string& target, std::string_view input, FuzzFolder& folder) {
   const std::string path = folder.put(fuzz::name_of_file(target), input);
   return fuzz::read_file(target, path, input);

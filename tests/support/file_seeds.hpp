@@ -9,8 +9,6 @@
 
 #include "core/hash.hpp"
 #include "farm/engine.hpp"
-#include "gazetrace/checkpoint.hpp"
-#include "gazetrace/traced_frame_file.hpp"
 #include "support/file_fuzz.hpp"
 #include "support/scene_seeds.hpp"
 #include "support/text_file.hpp"
@@ -21,23 +19,12 @@ struct FileSeed {
   std::string target, name, bytes;
 };
 
-// A sealed file (pipeline/sealed_file.hpp) with the seal that belongs to its bytes: only what comes after this door is
-// worth a fuzzer's time.
-inline std::string sealed_bytes(std::string_view bytes) {
-  constexpr std::size_t kSeal = 32;
-  std::string sealed(bytes.substr(0, bytes.size() - std::min(bytes.size(), kSeal)));
-  Digest digest;
-  digest.add(sealed);
-  return sealed + digest.hex();
-}
-
 namespace seeds {
 
 inline FrameHeader header() {
   FrameHeader header;
   header.frame = 1;
   header.settings_digest = fuzz::kDigest;
-  header.history = "1-3";
   header.software = "gazetrace";
   header.gaze_processing = {"offset 1 2"};
   return header;
@@ -50,7 +37,6 @@ inline RunRecord record() {
   record.command_line = {"gazetrace", "render"};
   record.config_toml = job_as_toml(Job{});
   record.settings_digest = fuzz::kDigest;
-  record.history = {fuzz::kDigest, "1-2", "history.bin"};
   record.input_digests = {{"scene.gltf", fuzz::kDigest}};
   record.frames = "1-2";
   record.is_part = true;
@@ -133,19 +119,6 @@ inline void add_pictures(std::vector<FileSeed>& files, const std::string& folder
       {"picture-hdr", "plain", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" + std::string(8, '\x80')});
 }
 
-inline void add_sealed(std::vector<FileSeed>& files, const std::string& folder) {
-  const std::string path = folder + "/seed.bin";
-  fuzz::SmallRun run;
-  PathTracer tracer(run.scene, test::threads(1));
-  const FrameRenderer renderer(tracer, run.settings);
-  TemporalHistory history;
-  static_cast<void>(renderer.render(run.request, history));
-  save_checkpoint(path, history, fuzz::kDigest);
-  files.push_back({"checkpoint", "smoothed", gazetrace::read_file(path)});
-  save_traced(path, 1, renderer.trace(run.request), fuzz::kDigest);
-  files.push_back({"traced", "guided", gazetrace::read_file(path)});
-}
-
 }  // namespace seeds
 
 // `folder` is for files that are written and read back at once.
@@ -156,7 +129,6 @@ inline std::vector<FileSeed> file_seeds(const std::string& folder) {
     files.push_back({"scene-render", name, bytes});
   }
   seeds::add_pictures(files, folder);
-  seeds::add_sealed(files, folder);
   files.push_back({"job", "defaults", job_as_toml(Job{})});
   files.push_back({"job", "some",
                    "scene = \"a.gltf\"\nsize = \"64x36\"\nframes = \"1-3,7\"\nspp = 4\noutput = \"o.####.exr\"\n"

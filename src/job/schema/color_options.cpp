@@ -37,11 +37,6 @@ void add_color_options(JobSchema& schema) {
              "The luminance to which auto brings the log-average")
       .above(0)
       .idle_when({without_automatic_exposure()});
-  schema
-      .value("--exposure-smoothing", &JobSettings::exposure_smoothing, "DURATION", Touch::color,
-             "Time constant, in video time, with which auto follows the frames; 0s: at once")
-      .at_least(0)
-      .idle_when({without_automatic_exposure()});
   schema.include(color_config_schema(), &JobSettings::color);
   schema.value("--display", color(&ColorSettings::display), "NAME", Touch::color,
                "OpenColorIO display; default: the config's ('gazetrace list views')");

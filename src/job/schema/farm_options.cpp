@@ -13,16 +13,7 @@ void add_farm_options(JobSchema& schema) {
           "Renders the K-th of N parts of the frames, which cost about the same by the samples of the plan; 1/1 makes "
           "all frames that are asked for a part of a longer sequence. Timing and run record carry its frames in their "
           "names, and 'gazetrace merge' joins all parts. The borders are the same "
-          "for every task and are written down beside the outputs. Frames that depend on those before them need "
-          "--resume-from or --preroll. A chunk without frames is done at once")
-      .decides_nothing()
-      .with(Trait::one_run);
-  schema
-      .value("--stage", &JobSettings::stage, choices<SequenceStage>(), Touch::frames,
-             "For frames that depend on those before them: trace only traces frames, on any number of machines, and "
-             "writes what was found beside the outputs (NAME.traced.0001.sparse); finish makes the pictures of such "
-             "files, "
-             "in order, to the bit those of a single run")
+          "for every task and are written down beside the outputs. A chunk without frames is done at once")
       .decides_nothing()
       .with(Trait::one_run);
   schema

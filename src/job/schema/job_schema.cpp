@@ -9,7 +9,7 @@ namespace {
 
 // What the options touch that presets set.
 constexpr Touches kOfPresets =
-    Touch::sampling | Touch::tracing | Touch::filter | Touch::history | Touch::color | Touch::output;
+    Touch::sampling | Touch::tracing | Touch::filter | Touch::window | Touch::color | Touch::output;
 
 // set_option() also sets the options that the preset consists of.
 void add_preset_option(JobSchema& schema) {
@@ -41,7 +41,7 @@ JobSchema make_schema() {
   add_frame_options(schema);
   add_sampling_options(schema);
   add_filter_options(schema);
-  add_history_options(schema);
+  add_window_options(schema);
   add_tracing_options(schema);
   add_color_options(schema);
   add_talk_options(schema);

@@ -22,7 +22,7 @@ void add_screen_options(JobSchema& schema);
 void add_frame_options(JobSchema& schema);
 void add_sampling_options(JobSchema& schema);
 void add_filter_options(JobSchema& schema);
-void add_history_options(JobSchema& schema);
+void add_window_options(JobSchema& schema);
 void add_tracing_options(JobSchema& schema);
 void add_color_options(JobSchema& schema);
 void add_output_options(JobSchema& schema);

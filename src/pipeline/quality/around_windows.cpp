@@ -31,8 +31,7 @@ AroundWindows::AroundWindows(PathTracer& tracer, const JudgedFrames& judged, con
       pictures_.back().radiance = ImageRgb(first.width_px, first.height_px);
       continue;
     }
-    TemporalHistory none;
-    RenderedFrame rendered = FrameRenderer(tracer, around).render(first, none);
+    RenderedFrame rendered = FrameRenderer(tracer, around).render(first);
     add_traces(rendered.samples, stats);
     pictures_.back().radiance = std::move(rendered.frame.radiance);
   }
@@ -45,8 +44,7 @@ void AroundWindows::expose(const WindowPictures& reference) {
     }
   }
   for (Picture& picture : pictures_) {
-    TemporalHistory none;
-    picture.exposure_ev = choose_exposure_ev(picture.radiance, 0, settings_.exposure, none);
+    picture.exposure_ev = choose_exposure_ev(picture.radiance, settings_.exposure);
     picture.shown = shown(picture.radiance, picture.exposure_ev);
   }
 }

@@ -11,7 +11,6 @@ FrameSettings discarded(const FrameSettings& settings, std::uint64_t tag) {
   own.trace.seed = hash_combine(hash_combine(settings.trace.seed, kLookTag), tag);
   own.trace.guides = false;
   own.trace.only_pixel.reset();
-  own.exposure.smoothing_s = 0;
   own.layers = {};
   return own;
 }

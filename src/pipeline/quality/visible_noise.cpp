@@ -103,8 +103,7 @@ VisibleNoise::VisibleNoise(const FrameRequest& request, const FrameSettings& set
 void VisibleNoise::learn(Pilot pilot) {
   level_ = pooled(pilot.luminance, settings_.threads);
   if (model_) {
-    TemporalHistory none;
-    const double ev = choose_exposure_ev(pilot.radiance, request_.t_video_ns, settings_.exposure, none);
+    const double ev = choose_exposure_ev(pilot.radiance, settings_.exposure);
     display_ = settings_.display_curve ? settings_.display_curve(ev) : linear_display_curve({}, ev);
     if (pilot_) {
       spectrum_ = measured_spectrum(relative_difference(*pilot_, pilot, level_), settings_.threads);

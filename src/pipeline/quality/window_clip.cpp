@@ -160,9 +160,8 @@ void WindowClip::render(const FramePlan& plan, const FrameSettings& settings, st
     }
     joined.emplace(renderer, plan, numbers);
   }
-  TemporalHistory history;
   for (const FrameRequest& request : plan.frames) {
-    RenderedFrame rendered = joined ? joined->render(request, history) : renderer.render(request, history);
+    RenderedFrame rendered = joined ? joined->render(request) : renderer.render(request);
     add_traces(rendered.samples, stats_);
     add_traces(rendered.others, stats_);
     pictures.push_back(std::move(rendered.frame.radiance));

@@ -104,8 +104,7 @@ void WindowReference::add_samples(double spp, std::size_t half) {
         return rates;
       };
       const FrameRenderer renderer(tracer_, own);
-      TemporalHistory none;
-      RenderedFrame rendered = renderer.render(part_of(*views_[v], windows_.windows[w].traced), none);
+      RenderedFrame rendered = renderer.render(part_of(*views_[v], windows_.windows[w].traced));
       add_traces(rendered.samples, stats_);
       ImageRgb& mean = pictures[v][w];
       mean = mean.empty() ? std::move(rendered.frame.radiance)

@@ -184,11 +184,10 @@ Judge::Judge(const std::vector<std::string>& files, const PlanarView& view, std:
   halves_[0] = mean_of(files, 0, files.size() / 2, view);
   halves_[1] = mean_of(files, files.size() / 2, files.size(), view);
   ImageRgb reference = mean_of(halves_[0], halves_[1]);
-  TemporalHistory nothing;
   ExposureSettings automatic;
   automatic.mode = ExposureMode::log_average;
   // Rounded, so that a better reference leaves it as it is.
-  ev_ = ev ? *ev : std::round(10 * choose_exposure_ev(reference, 0, automatic, nothing)) / 10;
+  ev_ = ev ? *ev : std::round(10 * choose_exposure_ev(reference, automatic)) / 10;
   color_.prepare(view.width_px, view.height_px, 8);
   reference_ = shown(std::move(reference));
   reference_luminance_ = display_luminance(reference_.code, {});

@@ -47,8 +47,7 @@ class Resolve : public testing::Test {
     const ColorPipeline color(resolved.job.settings.color);
     PathTracer tracer(*resolved.scene, tracer_options(resolved.job.settings));
     RunRecord record = start_run_record(resolved, tracer, color);
-    const SequenceResult result =
-        render_sequence(tracer, resolved.plan, color, resolved.pipeline, {}, std::move(resolved.history));
+    const SequenceResult result = render_sequence(tracer, resolved.plan, color, resolved.pipeline, {});
     finish_run_record(record, result, resolved.plan, 1.0);
     return run_record_json(record);
   }
@@ -137,7 +136,7 @@ TEST_F(Resolve, FramesHaveWhatTheirChannelsShow) {
     ResolvedJob resolved = resolve(job);
     PathTracer tracer(*resolved.scene, tracer_options(resolved.job.settings));
     const FrameRenderer renderer(tracer, resolved.pipeline);
-    const Frame frame = renderer.render(resolved.plan.frames.front(), resolved.history).frame;
+    const Frame frame = renderer.render(resolved.plan.frames.front()).frame;
     const std::size_t pixels = *aov != 0 ? frame.radiance.pixels.size() : 0;
     EXPECT_EQ(frame.albedo.pixels.size(), pixels) << aov;
     EXPECT_EQ(frame.normal.pixels.size(), pixels) << aov;

@@ -125,10 +125,8 @@ TEST_F(JudgedPlan, AnAnimatedSceneHasTheSameDigestWhenItIsRenderedAndWhenItIsFou
 TEST_F(JudgedPlan, DiscardedRenderingsTraceNoLayers) {
   FrameSettings settings;
   settings.layers.light = settings.layers.forward = true;
-  settings.exposure.smoothing_s = 1;
   const FrameSettings own = discarded(settings, 1);
   EXPECT_FALSE(own.layers.light || own.layers.forward);
-  EXPECT_EQ(own.exposure.smoothing_s, 0);
 }
 
 // A frame whose size follows from its screen: what is asked of single pixels is checked against that size.

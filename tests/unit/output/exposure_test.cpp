@@ -11,13 +11,11 @@ namespace gazetrace {
 namespace {
 
 double measure(const ImageRgb& image, ExposureSettings settings = {ExposureMode::log_average}) {
-  TemporalHistory history;
-  return choose_exposure_ev(image, 0, settings, history);
+  return choose_exposure_ev(image, settings);
 }
 
 TEST(Exposure, FixedIsWhatItSays) {
-  TemporalHistory history;
-  EXPECT_EQ(choose_exposure_ev(ImageRgb(4, 4, {9, 9, 9}), 0, {ExposureMode::fixed, -1.5}, history), -1.5);
+  EXPECT_EQ(choose_exposure_ev(ImageRgb(4, 4, {9, 9, 9}), {ExposureMode::fixed, -1.5}), -1.5);
 }
 
 TEST(Exposure, AConstantFrameIsBroughtToTheKey) {
@@ -83,23 +81,6 @@ TEST(Exposure, IsFiniteWhateverTheFrame) {
   for (const float value : {kInf, -kInf, kNan, -1.0F, kMax}) {
     EXPECT_TRUE(std::isfinite(measure(ImageRgb(33, 33, {value, value, value})))) << value;
   }
-}
-
-TEST(Exposure, SmoothingFollowsTheStepResponse) {
-  ExposureSettings settings{ExposureMode::log_average};
-  settings.smoothing_s = 0.5;
-  TemporalHistory history;
-  const ImageRgb dark(16, 16, {0.18F, 0.18F, 0.18F});
-  const ImageRgb bright(16, 16, {0.72F, 0.72F, 0.72F});
-  EXPECT_NEAR(choose_exposure_ev(dark, 0, settings, history), 0.0, 1e-6);
-  // A step of -2 stops; after t the rest of the way is exp(-t / tau), in whichever steps t is walked.
-  choose_exposure_ev(bright, 100'000'000, settings, history);
-  EXPECT_NEAR(choose_exposure_ev(bright, 400'000'000, settings, history), -2 * (1 - std::exp(-0.8)), 1e-6);
-  // A black frame says nothing and changes nothing.
-  const double before = *history.smoothed_ev;
-  EXPECT_NEAR(choose_exposure_ev(ImageRgb(16, 16), 500'000'000, settings, history), before, 1e-12);
-  // Time that runs backwards starts anew.
-  EXPECT_NEAR(choose_exposure_ev(bright, 0, settings, history), -2.0, 1e-6);
 }
 
 }  // namespace

@@ -21,7 +21,6 @@ TEST(RunRecord, RoundTrip) {
   record.config_toml = "a = 1\n# comment\n";
   record.settings_digest = "00ff";
   record.part_digests = {"01", "02"};
-  record.history = {"0102", "1-9", "h.bin"};
   record.input_digests = {{"a.gltf", "12"}, {"ä.csv", "34"}};
   record.frames = "1-100x2";
   record.is_part = true;
@@ -32,7 +31,6 @@ TEST(RunRecord, RoundTrip) {
   const std::string path = folder / "run.json";
   write_text_atomically(path, run_record_json(record));
   EXPECT_EQ(run_record_json(read_run_record(path)), run_record_json(record));
-  EXPECT_EQ(read_run_record(path).history, record.history);
   EXPECT_EQ(read_run_record(path).denoiser, record.denoiser);
   EXPECT_EQ(read_run_record(path).part_digests, record.part_digests);
   const auto json = nlohmann::json::parse(file_bytes(path));
@@ -93,7 +91,6 @@ TEST(RunRecord, PartsCarryTheirFramesInTheName) {
   EXPECT_EQ(run_record_file_name("out/f", "1,5,9-12", true), "out/f.run.1,5,9-12.json");
   EXPECT_EQ(run_record_file_name("out/f", "1", false), "out/f.run.json");
   EXPECT_EQ(run_record_file_name("out/", "1", false), "out/run.json");
-  EXPECT_EQ(traced_file_name("out/f", 7), "out/f.traced.0007.sparse");
   // Names stay below the 255 bytes of common file systems, and distinct.
   std::string frames = "1";
   for (int i = 3; i < 1000; i += 2) {

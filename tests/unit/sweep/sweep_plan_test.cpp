@@ -39,7 +39,7 @@ region-samples = [8, 4, 2]
 label = "filter"
 filter = "none"
 [[setting]]
-label = "history"
+label = "window"
 accumulate = "window"
 [[setting]]
 label = "trade-off"
@@ -104,7 +104,7 @@ TEST_F(SweepPlanFile, HelpHeadingsDecideNothing) {
 TEST_F(SweepPlanFile, RowsShareTheirReferenceUnlessTheyPictureSomethingElse) {
   const auto rows = sharing(load_sweep_plan(path_).plan);
   const auto reference = [&](const char* label) { return rows.at(label)[2]; };
-  for (const char* label : {"sampling", "filter", "history", "trade-off", "gaze"}) {
+  for (const char* label : {"sampling", "filter", "window", "trade-off", "gaze"}) {
     EXPECT_EQ(reference(label), reference("plain")) << label;
   }
   EXPECT_NE(reference("colour"), reference("plain"));
@@ -117,7 +117,7 @@ TEST_F(SweepPlanFile, UniformFramesAreSharedByWhatTheySee) {
   const auto uniform = [&](const char* label) { return rows.at(label)[1]; };
   EXPECT_EQ(uniform("sampling"), uniform("plain"));
   EXPECT_EQ(uniform("gaze"), uniform("plain"));
-  for (const char* label : {"filter", "history", "trade-off", "colour", "lens"}) {
+  for (const char* label : {"filter", "window", "trade-off", "colour", "lens"}) {
     EXPECT_NE(uniform(label), uniform("plain")) << label;
   }
 }
