@@ -22,7 +22,7 @@ if(TARGET gazetrace_cli)
   install(FILES ${shell_dir}/gazetrace.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
   set(data_dir ${CMAKE_INSTALL_DATADIR}/gazetrace)
   install(PROGRAMS ${PROJECT_BINARY_DIR}/installed-bin/gazetrace-report ${PROJECT_BINARY_DIR}/installed-bin/gazetrace-gaze-report
-    TYPE BIN)
+    ${PROJECT_BINARY_DIR}/installed-bin/gazetrace-gaze-iohub TYPE BIN)
   install(DIRECTORY python/gazetrace_report DESTINATION ${data_dir}/python PATTERN __pycache__ EXCLUDE)
   install(FILES examples/example.toml examples/demo.toml DESTINATION ${data_dir}/examples)
   install(DIRECTORY scenes/courtyard DESTINATION ${data_dir}/scenes)

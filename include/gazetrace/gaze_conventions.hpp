@@ -56,14 +56,14 @@ std::string_view to_string(GazeAxes axes);
 enum class UnorderedPolicy { error, sort, pairs, unwrap };
 
 // Which gaze is taken of a log that has both eyes.
-//   automatic  the log's own combined gaze where it has one, which may jump when an eye is lost. Else the mean; but the
-//              best eye, with a warning, where the median vertical difference of the eyes is above 0.5 degrees
+//   automatic  the log's own combined gaze where it has one, which may jump when an eye is lost. Else the mean; but
+//              where the median vertical difference of the eyes is above 0.5 degrees, with a warning, the eye that has
+//              more usable samples, or less noise where both have as many. While it is lost the other one stands in,
+//              moved by the offset between them
 //   left, right  that eye alone
 //   mean       the mean of both eyes, by angle. While one eye is lost the other one is moved by half the offset between
 //              them, which is interpolated over gaps of up to 75 ms and a running mean over longer ones
-//   dominant   `dominant_eye`; while it is lost the other one, moved by the offset between them
-//   best       as dominant, with the eye that has more usable samples, or less noise where both have as many
-enum class EyeChoice { automatic, left, right, mean, dominant, best };
+enum class EyeChoice { automatic, left, right, mean };
 
 // What a conclusion was drawn from, the most trusted first. Conclusions from statistics are guesses.
 enum class Evidence : std::uint8_t { option, sidecar, header, format, statistics };
@@ -126,7 +126,7 @@ struct Conventions {
   bool swap_xy = false, flip_x = false, flip_y = false;
   // The number that stands for missing places, in the file's unit. -32768, and magnitudes from 1e7 on, always do.
   std::optional<double> missing_value;
-  bool zero_is_missing = false;
+  bool zero_is_missing = false;  // so is a place of exactly (0, 0)
 
   // The display, or the scene camera's picture, of which positions become fractions; and the geometry that the
   // interpreted log states.
@@ -137,7 +137,6 @@ struct Conventions {
   // Where the log has both eyes. Of a log that was interpreted, `eye_taken` says which gaze its samples are: "left",
   // "right", "mean" or "combined".
   EyeChoice eye = EyeChoice::automatic;
-  std::optional<Eye> dominant_eye;
   enum class TakenEye : std::uint8_t { left, right, mean, combined };
   struct Taken {
     TakenEye eye;

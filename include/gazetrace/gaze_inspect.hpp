@@ -94,7 +94,7 @@ struct GazeFinding {
              // "missing-value", "decimal-commas", "y-flip", "x-flip", "swapped-axes", "frozen", "disparity", ...
   std::string what;
   std::string evidence;
-  std::string setting;   // what mends it, such as "`gaze-flip-y`" or "`gaze-unit` px"; empty: no option does
+  std::string setting;   // what mends it, such as "`flip-y`" or "`unit` px"; empty: no option does
   bool is_open = false;  // a question that `setting` answers: until then only an inspection reads the file
 };
 
@@ -109,7 +109,7 @@ struct GazeInspection {
   std::vector<GazeCalibration> calibrations;
   std::vector<GazeRecording> recordings;  // as GazeLog has them, and which of them was inspected
   std::size_t recording = 0;
-  std::array<std::size_t, 6> events{};  // in the order of GazeEventType
+  std::array<std::size_t, 7> events{};  // in the order of GazeEventType
   std::size_t head_poses = 0;
   bool both_eyes = false;
   bool is_wall_clock = false;  // stamps are times of day; unless the options keep them, first_ns and last_ns are 0

@@ -80,6 +80,7 @@ enum class GazeEventType : std::uint8_t {
   blink,
   message,  // of the experiment or the tracker; its words are in `text`
   segment,  // the recording ran from begin to end; between segments it was stopped
+  trial,    // a part of the recording that was named when it was imported; its name is in `text` and may be empty
   aoi,      // gaze lay in an area of interest that the log names in `text`
 };
 std::string_view to_string(GazeEventType type);

@@ -12,7 +12,6 @@
 #include "gazetrace/gaze_events.hpp"
 #include "gazetrace/gaze_log.hpp"
 #include "gazetrace/gaze_process.hpp"
-#include "gazetrace/gaze_trials.hpp"
 #include "gazetrace/gaze_vergence.hpp"
 
 namespace gazetrace {
@@ -51,7 +50,6 @@ struct GazeMeasureSettings {
   double pupil_distance_mm = 0;  // for the vergence; 0: as VergenceSettings
   std::vector<GazeStep> steps;   // of processing: the events are those of the gaze after them, the quality is that of
                                  // the recording
-  TrialSettings trials;          // how the log divides, if it does
   bool keep_ids = false;         // names of trials, which are texts of the recording
 };
 
@@ -75,7 +73,7 @@ struct GazeMeasurements {
   std::string json;  // all numbers, and what a drawing has to know of the tables
   Warnings warnings;
 };
-// Throws the errors of detect_events, and of find_trials where the settings name rules for trials.
+// Throws the errors of detect_events.
 GazeMeasurements measure_gaze(const GazeLog& log, const GazeMeasureSettings& settings);
 
 }  // namespace gazetrace

@@ -82,13 +82,14 @@ struct GazeReadOptions {
   std::optional<DisplayGeometry> fallback_display;
   UnorderedPolicy unordered = UnorderedPolicy::error;
   EyeChoice eye = EyeChoice::automatic;
-  std::optional<Eye> dominant_eye;  // left or right; required by EyeChoice::dominant
   GazeFrame frame = GazeFrame::automatic;
   double min_confidence = std::numeric_limits<double>::quiet_NaN();  // NaN: the format's own (Pupil Core: 0.6)
-  bool zero_is_missing = false;  // a place of exactly (0, 0) is missing, even if its row is marked as valid
   // Places with exactly this number in one coordinate, in the log's own unit, are missing; 0 must stand in both, and in
   // directions every number in all three. Coordinates of -32768, and of 1e7 and more, always stand for missing places.
   std::optional<double> missing_value;
+  // The log's x and y of the display's top left corner, in the log's own unit, where it does not state them: with two
+  // monitors side by side, (1920, 0) of the right one. Empty: (0, 0).
+  std::optional<Vec2d> corner;
   bool swap_xy = false;  // x and y are exchanged in the log
   bool flip_x = false;   // left and right are exchanged: u becomes 1 - u, direction x becomes -x
   bool flip_y = false;   // top and bottom likewise
@@ -104,6 +105,7 @@ struct GazeReadOptions {
   // What belongs to a BIDS recording, its sidecars and those of other eyes, may be symbolic links that lead out of its
   // data set. Otherwise the links are followed, and must end in it.
   bool allow_outside = false;
+  std::uint64_t most_unpacked_bytes = std::numeric_limits<std::uint64_t>::max();  // that a packed log may become
 };
 
 // Returns `stated`, with what it leaves open taken from `by`: the pixels, the size, or the distance together with the

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trials: the parts of a recording that are looked at one by one. They are found by the recording's own blocks, by its
-// messages, or in a table.
+// Trials: the parts of a recording that are looked at one by one. Those that its importer named, by messages or by a
+// table, are events of the log; of a log without them each block is a trial.
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,13 +13,8 @@
 
 namespace gazetrace {
 
-// blocks: each block of the recording (EyeLink's START to END, a trial of SMI) is a trial. messages: a message begins
-// each. table: a file lists them.
-enum class TrialSplit : std::uint8_t { blocks, messages, table };
-
-struct TrialSettings {
-  std::string trial;             // the one to look at: its number, or its name; empty: the whole recording
-  std::optional<TrialSplit> by;  // empty: the table where there is one, messages where a pattern is given, else blocks
+// How an importer finds trials: by messages, or in a table.
+struct TrialRules {
   // The message that begins a trial, and the one that ends it. A pattern with * or ? stands for the whole text; one
   // without for every text that contains it. Without `end` a trial ends where the next one begins, or its block ends.
   std::string begin, end;
@@ -33,19 +27,23 @@ struct TrialSettings {
   std::string table;
 };
 
-// In the order of time; only those that hold a sample. Error(input) where there is none, with what the log has instead;
-// Error(usage) for rules that contradict each other; Error(input) with file:line for a broken table.
-std::vector<GazeTrial> find_trials(const GazeLog& log, const TrialSettings& settings);
+// Makes the trials that the rules find events of the log, in place of those that it has; nothing without a rule. Only
+// those that hold a sample count. Error(input) where there is none, with what the log has instead; Error(usage) for
+// rules that contradict each other; Error(input) with file:line for a broken table.
+void name_trials(GazeLog& log, const TrialRules& rules);
+// The log's trials, or its blocks, in the order of time; only those that hold a sample. Error(input) where there is
+// none.
+std::vector<GazeTrial> find_trials(const GazeLog& log);
 // The one that `which` names, by number or name. Error(usage) with what there is.
 const GazeTrial& trial_by_name(const std::vector<GazeTrial>& trials, std::string_view which);
 
 // What the log holds between begin and end of the trial: samples, messages and events, which are cut at the ends.
 // Validations before it stay, since they say how good it is. Of the head's poses the nearest one on either side stays.
 GazeLog cut_to_trial(GazeLog log, const GazeTrial& trial);
-// The log, or the trial of it that the settings name.
-GazeLog chosen_trial(GazeLog log, const TrialSettings& settings);
+// The trial of it that `which` names; empty: the whole log.
+GazeLog chosen_trial(GazeLog log, const std::string& which);
 
-// Whether a message's text fits a pattern, as TrialSettings::begin says.
+// Whether a message's text fits a pattern, as TrialRules::begin says.
 bool fits_pattern(std::string_view text, std::string_view pattern);
 
 }  // namespace gazetrace

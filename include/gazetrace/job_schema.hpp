@@ -15,7 +15,8 @@ inline constexpr const char* kFarmHeading = "On many machines";
 const JobSchema& job_schema();
 
 // Parts of it that other commands have as well, under the same names.
-OptionSchema<GazeFileSettings> gaze_file_schema();             // how a log is read, without the log itself
+OptionSchema<GazeFileSettings> gaze_choice_schema();           // what is taken of a log
+OptionSchema<GazeFileSettings> gaze_import_schema();           // that, and how a log is read: the importer's alone
 OptionSchema<std::vector<std::string>> gaze_process_schema();  // the steps of processing
 OptionSchema<ScreenSettings> screen_schema();                  // where the viewer sat
 OptionSchema<ColorSettings> color_config_schema();             // the OpenColorIO config

@@ -35,7 +35,8 @@ struct GazeFileSettings {
   GazeReadOptions read;
   std::string columns_file;  // a column map; what `read` says overrides it
   std::optional<double> min_confidence;
-  TrialSettings trials;
+  TrialRules trial_rules;
+  std::string trial;  // the one that is taken, by number or name; empty: the whole recording
 };
 
 // The settings of one run, in the order of the options, which job_schema.hpp describes.

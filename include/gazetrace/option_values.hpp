@@ -16,7 +16,6 @@
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/gaze.hpp"
 #include "gazetrace/gaze_events.hpp"
-#include "gazetrace/gaze_trials.hpp"
 #include "gazetrace/output.hpp"
 #include "gazetrace/pipeline.hpp"
 #include "gazetrace/plan.hpp"
@@ -142,13 +141,11 @@ GAZETRACE_ENUM_NAMES(NoGazePolicy, "policy for missing gaze", {E::hold, "hold"},
 GAZETRACE_ENUM_NAMES(GazeAxes, "gaze axes", {E::automatic, "auto"}, {E::gl, "gl"}, {E::unity, "unity"},
                      {E::sranipal, "sranipal"}, {E::cv, "cv"})
 GAZETRACE_ENUM_NAMES(EyeChoice, "eye", {E::automatic, "auto"}, {E::left, "left"}, {E::right, "right"},
-                     {E::mean, "mean"}, {E::dominant, "dominant"}, {E::best, "best"})
+                     {E::mean, "mean"})
 GAZETRACE_ENUM_NAMES(GazeFrame, "gaze frame", {E::automatic, "auto"}, {E::head, "head"},
                      {E::scene_camera, "scene-camera"}, {E::world, "world"})
 GAZETRACE_ENUM_NAMES(Eye, "eye", {E::left, "left"}, {E::right, "right"})
 GAZETRACE_ENUM_NAMES(GazeDevice, "device", {E::desktop, "desktop"}, {E::head_mounted, "head-mounted"})
-GAZETRACE_ENUM_NAMES(TrialSplit, "way to split trials", {E::blocks, "blocks"}, {E::messages, "messages"},
-                     {E::table, "table"})
 GAZETRACE_ENUM_NAMES(UnorderedPolicy, "policy for unordered stamps", {E::error, "error"}, {E::sort, "sort"},
                      {E::pairs, "pairs"}, {E::unwrap, "unwrap"})
 GAZETRACE_ENUM_NAMES(DiffuseModel, "diffuse model", {E::burley, "burley"}, {E::lambert, "lambert"}, {E::matte, "matte"})

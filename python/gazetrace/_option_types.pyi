@@ -49,42 +49,9 @@ class JobOptions(TypedDict, total=False):
     focus_distance: Value | None
     sensor_height: Value | None
     shutter: Value | None
-    gaze_format: Value | None
     gaze_recording: Value | None
-    gaze_events: Value | None
-    gaze_time_column: Value | None
-    gaze_x_column: Value | None
-    gaze_y_column: Value | None
-    gaze_z_column: Value | None
-    gaze_validity_column: Value | None
-    gaze_valid_values: Value | Sequence[Value] | None
-    gaze_confidence_column: Value | None
-    gaze_pupil_column: Value | None
-    gaze_eye_column: Value | None
-    gaze_recording_column: Value | None
-    gaze_time_unit: Value | None
-    gaze_unit: Value | None
-    gaze_origin: Value | None
-    gaze_order: Value | None
-    gaze_columns: Value | None
-    gaze_axes: Value | None
-    gaze_frame: Value | None
     gaze_eye: Value | None
-    gaze_dominant: Value | None
-    gaze_min_confidence: Value | None
-    gaze_zero_missing: bool | None
-    gaze_missing_value: Value | None
-    gaze_swap_xy: bool | None
-    gaze_flip_x: bool | None
-    gaze_flip_y: bool | None
-    gaze_decimal_comma: bool | None
     trial: Value | None
-    trial_by: Value | None
-    trial_start: Value | None
-    trial_end: Value | None
-    trial_nth: Value | None
-    trial_per_block: bool | None
-    trial_table: Value | None
     gaze_at: Value | Sequence[Value] | None
     gaze_mode: Value | None
     gaze_missing: Value | None
@@ -155,37 +122,35 @@ class JobOptions(TypedDict, total=False):
     max_time: Value | None
 
 class GazeOptions(TypedDict, total=False):
-    gaze_format: Value | None
     gaze_recording: Value | None
-    gaze_events: Value | None
-    gaze_time_column: Value | None
-    gaze_x_column: Value | None
-    gaze_y_column: Value | None
-    gaze_z_column: Value | None
-    gaze_validity_column: Value | None
-    gaze_valid_values: Value | Sequence[Value] | None
-    gaze_confidence_column: Value | None
-    gaze_pupil_column: Value | None
-    gaze_eye_column: Value | None
-    gaze_recording_column: Value | None
-    gaze_time_unit: Value | None
-    gaze_unit: Value | None
-    gaze_origin: Value | None
-    gaze_order: Value | None
-    gaze_columns: Value | None
-    gaze_axes: Value | None
-    gaze_frame: Value | None
     gaze_eye: Value | None
-    gaze_dominant: Value | None
-    gaze_min_confidence: Value | None
-    gaze_zero_missing: bool | None
-    gaze_missing_value: Value | None
-    gaze_swap_xy: bool | None
-    gaze_flip_x: bool | None
-    gaze_flip_y: bool | None
-    gaze_decimal_comma: bool | None
     trial: Value | None
-    trial_by: Value | None
+    time_column: Value | None
+    x_column: Value | None
+    y_column: Value | None
+    z_column: Value | None
+    validity_column: Value | None
+    valid_values: Value | Sequence[Value] | None
+    confidence_column: Value | None
+    pupil_column: Value | None
+    eye_column: Value | None
+    recording_column: Value | None
+    columns: Value | None
+    format: Value | None
+    time_unit: Value | None
+    unit: Value | None
+    origin: Value | None
+    corner: Value | Sequence[Value] | None
+    axes: Value | None
+    frame: Value | None
+    min_confidence: Value | None
+    missing_value: Value | None
+    order: Value | None
+    swap_xy: bool | None
+    flip_x: bool | None
+    flip_y: bool | None
+    decimal_comma: bool | None
+    events: Value | None
     trial_start: Value | None
     trial_end: Value | None
     trial_nth: Value | None
@@ -221,42 +186,9 @@ class MeasureOptions(TypedDict, total=False):
     gaze_start: Value | None
     region_eccentricities: Value | Sequence[Value] | None
     frame_rect: Value | Sequence[Value] | None
-    gaze_format: Value | None
     gaze_recording: Value | None
-    gaze_events: Value | None
-    gaze_time_column: Value | None
-    gaze_x_column: Value | None
-    gaze_y_column: Value | None
-    gaze_z_column: Value | None
-    gaze_validity_column: Value | None
-    gaze_valid_values: Value | Sequence[Value] | None
-    gaze_confidence_column: Value | None
-    gaze_pupil_column: Value | None
-    gaze_eye_column: Value | None
-    gaze_recording_column: Value | None
-    gaze_time_unit: Value | None
-    gaze_unit: Value | None
-    gaze_origin: Value | None
-    gaze_order: Value | None
-    gaze_columns: Value | None
-    gaze_axes: Value | None
-    gaze_frame: Value | None
     gaze_eye: Value | None
-    gaze_dominant: Value | None
-    gaze_min_confidence: Value | None
-    gaze_zero_missing: bool | None
-    gaze_missing_value: Value | None
-    gaze_swap_xy: bool | None
-    gaze_flip_x: bool | None
-    gaze_flip_y: bool | None
-    gaze_decimal_comma: bool | None
     trial: Value | None
-    trial_by: Value | None
-    trial_start: Value | None
-    trial_end: Value | None
-    trial_nth: Value | None
-    trial_per_block: bool | None
-    trial_table: Value | None
     screen: Value | None
     screen_px: Value | Sequence[Value] | None
     screen_cm: Value | Sequence[Value] | None

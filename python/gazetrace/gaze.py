@@ -20,8 +20,8 @@ KINDS = {"screen": "gaze on a screen", "direction": "directions of gaze"}
 def read_gaze(path, *, keep_ids=False, **options):
     """Reads a gaze log of any known format.
 
-    `options` are those of a job that say how a log is read (`gaze_format`, `gaze_order`, `gaze_eye`, ...) and where the
-    viewer sat (`screen`, `screen_px`, ...). Texts of messages, which may name a person, are empty unless `keep_ids`.
+    `options` are those of `gazetrace gaze import` (`format`, `order`, `unit`, `gaze_eye`, ...) and where the viewer sat
+    (`screen`, `screen_px`, ...). Texts of messages, which may name a person, are empty unless `keep_ids`.
     """
     file, screen = split(options, _core.gaze_file_options(), _core.screen_options())
     return GazeLog(_core.read_gaze(os.fspath(path), file, screen), keep_ids)

@@ -16,6 +16,11 @@ def gaze(finds_itself=False):
     end("gazetrace gaze report", main, finds_itself)
 
 
+def iohub(finds_itself=False):
+    from .iohub_command import main
+    end("gazetrace gaze iohub", main, finds_itself)
+
+
 def which(words):
     commands = {"sweep": sweep, "gaze": gaze}
     if not words or words[0] not in commands:

@@ -13,7 +13,7 @@ from pathlib import Path
 from .command_line import FAILED, Problem, add_json_option, check_output, json_file, say, with_json_joined, write
 
 DESCRIPTION = """Make a page of a gaze log: quality of the data, events, heat maps and scanpaths of each trial, and the course over time.
-All options of 'gazetrace gaze measure' are taken, too, such as --method, --gaze-process, --trial-start or --screen-px."""
+All options of 'gazetrace gaze measure' are taken, too, such as --method, --gaze-process, --trial or --screen-px."""
 
 
 def program():

@@ -29,7 +29,7 @@ using LogPtr = std::shared_ptr<GazeLog>;
 LogPtr read_log(const std::string& path, const OptionTexts& file, const OptionTexts& screen) {
   GazeFileSettings settings;
   ScreenSettings seen_on;
-  assign_options(settings, gaze_file_schema(), file);
+  assign_options(settings, gaze_import_schema(), file);
   assign_options(seen_on, screen_schema(), screen);
   settings.path = path;
   return std::make_shared<GazeLog>(read_gaze_file(settings, seen_on));

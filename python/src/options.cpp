@@ -117,7 +117,7 @@ void refuse_option(const std::string& keyword, const std::vector<std::string>& k
 void bind_options(py::module_& module) {
   module.def("refuse_option", &refuse_option);
   module.def("job_options", [] { return described(job_schema().list()); });
-  module.def("gaze_file_options", [] { return described(gaze_file_schema().list()); });
+  module.def("gaze_file_options", [] { return described(gaze_import_schema().list()); });
   module.def("screen_options", [] { return described(screen_schema().list()); });
   module.def("color_options", [] { return described(color_config_schema().list()); });
   module.def("compare_options", [] { return described(compare_schema().list()); });

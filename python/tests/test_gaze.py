@@ -28,7 +28,7 @@ class GazeTest(TestCase):
         np.testing.assert_array_equal(u, gazetrace.read_gaze(GAZE_LOG).u)
 
     def test_options_are_those_of_the_schema(self):
-        self.assertSays("did you mean 'gaze_format'?", "usage", gazetrace.read_gaze, GAZE_LOG, gaze_formt="x")
+        self.assertSays("did you mean 'format'?", "usage", gazetrace.read_gaze, GAZE_LOG, formt="x")
         self.assertSays("none.csv", "input", gazetrace.read_gaze, "none.csv")
         path = self.folder / "pixels.csv"
         path.write_text("time_ms,x_px,y_px\n0,960,540\n10,480,270\n20,0,1080\n")

@@ -93,6 +93,9 @@ std::string unknown_option_text(const std::string& flag, const CLI::App& command
   if (flag.starts_with("--") && job_schema().find(flag.substr(2)) != nullptr) {
     return "'" + flag + "' is an option of 'gazetrace render', and none of '" + words + "'";
   }
+  if (flag.starts_with("--") && gaze_import_schema().find(flag.substr(2)) != nullptr) {
+    return "'" + flag + "' is an option of 'gazetrace gaze import', which writes a file that '" + words + "' reads";
+  }
   return unknown_among_many("option", flag, known);
 }
 

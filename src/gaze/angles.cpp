@@ -72,7 +72,7 @@ bool knows_angles(const GazeLog& log) {
 GazeDirections gaze_directions(const GazeLog& log, GazeSpace space) {
   if (log.kind == GazeKind::scene_camera) {
     throw Error(ErrorKind::input, log.source, "gaze on a scene camera's picture has no angles",
-                "use `gaze-frame` head, or a log mapped to a surface");
+                "use `frame` head, or a log mapped to a surface");
   }
   const ScreenAngles screen(log);
   if (log.kind == GazeKind::screen && !screen.known()) {

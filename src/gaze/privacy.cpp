@@ -94,6 +94,9 @@ LogWithoutTimesOfDay without_times_of_day(GazeLog log) {
 
 Warnings leave_out_identities(GazeLog& log) {
   take_dates_out(log);
+  for (GazeEvent& event : log.events) {
+    event.text = event.type == GazeEventType::trial ? std::string() : std::move(event.text);  // as messages name them
+  }
   const std::size_t left_out =
       std::erase_if(log.events, [](const GazeEvent& event) { return event.type == GazeEventType::message; });
   if (left_out == 0) {

@@ -8,7 +8,7 @@
 
 namespace gazetrace {
 
-// The rows of a table of trials in the order of time, see TrialSettings::table; numbers and blocks are not filled in.
+// The rows of a table of trials in the order of time, see TrialRules::table; numbers and blocks are not filled in.
 std::vector<GazeTrial> read_trial_table(const std::string& path);
 
 }  // namespace gazetrace

@@ -14,16 +14,22 @@
 namespace gazetrace {
 namespace {
 
-// The blocks of the recording, in the order of time.
-std::vector<GazeTrial> blocks_of(const GazeLog& log) {
-  std::vector<GazeTrial> blocks;
+// Those that events of a type state, in the order of time.
+std::vector<GazeTrial> stated_by(const GazeLog& log, GazeEventType type) {
+  std::vector<GazeTrial> trials;
   for (const GazeEvent& event : log.events) {
-    if (event.type == GazeEventType::segment) {
-      blocks.push_back({0, {}, event.begin_ns, event.end_ns, 0});
+    if (event.type == type) {
+      trials.push_back({0, type == GazeEventType::trial ? event.text : std::string(), event.begin_ns, event.end_ns, 0});
     }
   }
-  std::stable_sort(blocks.begin(), blocks.end(),
+  std::stable_sort(trials.begin(), trials.end(),
                    [](const GazeTrial& a, const GazeTrial& b) { return a.begin_ns < b.begin_ns; });
+  return trials;
+}
+
+// The blocks of the recording.
+std::vector<GazeTrial> blocks_of(const GazeLog& log) {
+  std::vector<GazeTrial> blocks = stated_by(log, GazeEventType::segment);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     blocks[i].block = static_cast<std::int32_t>(i) + 1;
   }
@@ -49,15 +55,15 @@ std::vector<const GazeEvent*> messages_of(const GazeLog& log, const std::string&
   return messages;
 }
 
-std::vector<GazeTrial> trials_by_messages(const GazeLog& log, const TrialSettings& settings,
+std::vector<GazeTrial> trials_by_messages(const GazeLog& log, const TrialRules& rules,
                                           const std::vector<GazeTrial>& blocks) {
   std::map<std::int32_t, std::int32_t> counts;
   std::vector<GazeTrial> trials;
-  for (const GazeEvent* message : messages_of(log, settings.begin)) {
+  for (const GazeEvent* message : messages_of(log, rules.begin)) {
     const GazeTrial* const block = block_at(blocks, message->begin_ns);
     const std::int32_t in_block = block != nullptr ? block->block : 0;
-    const std::int32_t count = ++counts[settings.per_block ? in_block : 0];
-    if (settings.nth == 0 || count == settings.nth) {
+    const std::int32_t count = ++counts[rules.per_block ? in_block : 0];
+    if (rules.nth == 0 || count == rules.nth) {
       const std::int64_t end_ns = block != nullptr ? block->end_ns : log.samples.back().t_ns;
       trials.push_back({0, message->text, message->begin_ns, std::max(end_ns, message->begin_ns), in_block});
     }
@@ -65,10 +71,10 @@ std::vector<GazeTrial> trials_by_messages(const GazeLog& log, const TrialSetting
   for (std::size_t i = 0; i + 1 < trials.size(); ++i) {
     trials[i].end_ns = std::max(std::min(trials[i].end_ns, trials[i + 1].begin_ns - 1), trials[i].begin_ns);
   }
-  if (settings.end.empty()) {
+  if (rules.end.empty()) {
     return trials;
   }
-  const std::vector<const GazeEvent*> ends = messages_of(log, settings.end);
+  const std::vector<const GazeEvent*> ends = messages_of(log, rules.end);
   for (GazeTrial& trial : trials) {
     const auto end = std::upper_bound(ends.begin(), ends.end(), trial.begin_ns,
                                       [](std::int64_t t, const GazeEvent* message) { return t < message->begin_ns; });
@@ -79,38 +85,48 @@ std::vector<GazeTrial> trials_by_messages(const GazeLog& log, const TrialSetting
   return trials;
 }
 
-TrialSplit split_of(const TrialSettings& settings) {
-  const TrialSplit split = settings.by.value_or(!settings.table.empty()   ? TrialSplit::table
-                                                : !settings.begin.empty() ? TrialSplit::messages
-                                                                          : TrialSplit::blocks);
-  const auto needs = [&](TrialSplit which, bool given, const char* option, const char* name) {
-    if (given && split != which) {
-      throw Error(ErrorKind::usage, option, fmt::format("says nothing where trials are not split by {}", name),
-                  fmt::format("leave it out, or give `trial-by` {}", name));
+// Whether there is any rule; Error(usage) where they contradict each other.
+bool has_rule(const TrialRules& rules) {
+  const auto needs_start = [&](bool is_given, const char* option) {
+    if (is_given && rules.begin.empty()) {
+      throw Error(ErrorKind::usage, option, "says nothing without a message that begins a trial", "give `trial-start`");
     }
   };
-  needs(TrialSplit::table, !settings.table.empty(), "`trial-table`", "table");
-  needs(TrialSplit::messages, !settings.begin.empty(), "`trial-start`", "messages");
-  needs(TrialSplit::messages, !settings.end.empty(), "`trial-end`", "messages");
-  needs(TrialSplit::messages, settings.nth != 0, "`trial-nth`", "messages");
-  needs(TrialSplit::messages, settings.per_block, "`trial-per-block`", "messages");
-  if (split == TrialSplit::messages && settings.begin.empty()) {
-    throw Error(ErrorKind::usage, "`trial-by`", "does not say which message begins a trial", "give `trial-start`");
+  needs_start(!rules.end.empty(), "`trial-end`");
+  needs_start(rules.nth != 0, "`trial-nth`");
+  needs_start(rules.per_block, "`trial-per-block`");
+  if (!rules.table.empty() && !rules.begin.empty()) {
+    throw Error(ErrorKind::usage, "`trial-table`", "messages divide the log, too", "give it or `trial-start`");
   }
-  if (split == TrialSplit::table && settings.table.empty()) {
-    throw Error(ErrorKind::usage, "`trial-by`", "names no table", "give `trial-table`");
-  }
-  if (settings.per_block && settings.nth == 0) {
+  if (rules.per_block && rules.nth == 0) {
     throw Error(ErrorKind::usage, "`trial-per-block`", "counts messages, and every one begins a trial",
                 "give `trial-nth`");
   }
-  return split;
+  return !rules.table.empty() || !rules.begin.empty();
 }
 
 std::string what_it_has(const GazeLog& log, const std::vector<GazeTrial>& blocks) {
   const auto messages = std::count_if(log.events.begin(), log.events.end(),
                                       [](const GazeEvent& e) { return e.type == GazeEventType::message; });
   return fmt::format("the log has {} blocks and {} messages", blocks.size(), messages);
+}
+
+// Those that hold a sample, with their numbers and blocks.
+std::vector<GazeTrial> numbered(const GazeLog& log, std::vector<GazeTrial> trials,
+                                const std::vector<GazeTrial>& blocks) {
+  std::erase_if(trials, [&](const GazeTrial& trial) {
+    const auto first = std::lower_bound(log.samples.begin(), log.samples.end(), trial.begin_ns,
+                                        [](const GazeSample& s, std::int64_t t) { return s.t_ns < t; });
+    return first == log.samples.end() || first->t_ns > trial.end_ns;
+  });
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    trials[i].number = static_cast<std::int32_t>(i) + 1;
+    if (trials[i].block == 0) {
+      const GazeTrial* const block = block_at(blocks, trials[i].begin_ns);
+      trials[i].block = block != nullptr ? block->block : 0;
+    }
+  }
+  return trials;
 }
 
 }  // namespace
@@ -142,39 +158,38 @@ bool fits_pattern(std::string_view text, std::string_view pattern) {
   return pattern.find_first_not_of('*', p) == std::string_view::npos;
 }
 
-std::vector<GazeTrial> find_trials(const GazeLog& log, const TrialSettings& settings) {
-  const TrialSplit split = split_of(settings);
+void name_trials(GazeLog& log, const TrialRules& rules) {
+  if (!has_rule(rules)) {
+    return;
+  }
   if (log.samples.empty()) {
     throw Error(ErrorKind::input, log.source, "has no samples to divide into trials");
   }
+  const bool is_table = !rules.table.empty();
   const std::vector<GazeTrial> blocks = blocks_of(log);
-  std::vector<GazeTrial> trials = split == TrialSplit::blocks     ? blocks
-                                  : split == TrialSplit::messages ? trials_by_messages(log, settings, blocks)
-                                                                  : read_trial_table(settings.table);
-  std::erase_if(trials, [&](const GazeTrial& trial) {
-    const auto first = std::lower_bound(log.samples.begin(), log.samples.end(), trial.begin_ns,
-                                        [](const GazeSample& s, std::int64_t t) { return s.t_ns < t; });
-    return first == log.samples.end() || first->t_ns > trial.end_ns;
-  });
-  for (std::size_t i = 0; i < trials.size(); ++i) {
-    trials[i].number = static_cast<std::int32_t>(i) + 1;
-    if (trials[i].block == 0) {
-      const GazeTrial* const block = block_at(blocks, trials[i].begin_ns);
-      trials[i].block = block != nullptr ? block->block : 0;
-    }
-  }
+  const std::vector<GazeTrial> trials =
+      numbered(log, is_table ? read_trial_table(rules.table) : trials_by_messages(log, rules, blocks), blocks);
   if (trials.empty()) {
-    const char* const remedy =
-        split == TrialSplit::blocks     ? "give `trial-start` with a message's text, or `trial-table`"
-        : split == TrialSplit::messages ? "check the text of `trial-start`, and `trial-nth` against their number"
-                                        : "its times must be on the clock of the log";
     throw Error(ErrorKind::input, log.source,
-                fmt::format("has no trial by {}: {}",
-                            split == TrialSplit::blocks     ? "blocks"
-                            : split == TrialSplit::messages ? "messages"
-                                                            : "that table",
-                            what_it_has(log, blocks)),
-                remedy);
+                fmt::format("has no trial by {}: {}", is_table ? "that table" : "messages", what_it_has(log, blocks)),
+                is_table ? "its times must be on the clock of the log"
+                         : "check the text of `trial-start`, and `trial-nth` against their number");
+  }
+  std::erase_if(log.events, [](const GazeEvent& event) { return event.type == GazeEventType::trial; });
+  for (const GazeTrial& trial : trials) {
+    log.events.push_back({GazeEventType::trial, Eye::cyclopean, trial.begin_ns, trial.end_ns, trial.name, 0});
+  }
+}
+
+std::vector<GazeTrial> find_trials(const GazeLog& log) {
+  const std::vector<GazeTrial> blocks = blocks_of(log);
+  const std::vector<GazeTrial> named = stated_by(log, GazeEventType::trial);
+  std::vector<GazeTrial> trials = numbered(log, named.empty() ? blocks : named, blocks);
+  if (trials.empty()) {
+    throw Error(ErrorKind::input, log.source, "has no trials: " + what_it_has(log, blocks),
+                fmt::format("name them once: gazetrace gaze import {} -o gaze.csv `trial-start` TEXT, or `trial-table` "
+                            "FILE",
+                            log.source));
   }
   return trials;
 }
@@ -247,13 +262,12 @@ GazeLog cut_to_trial(GazeLog log, const GazeTrial& trial) {
   return log;
 }
 
-GazeLog chosen_trial(GazeLog log, const TrialSettings& settings) {
-  if (settings.trial.empty()) {
-    split_of(settings);  // says what contradicts itself, although nothing is cut
+GazeLog chosen_trial(GazeLog log, const std::string& which) {
+  if (which.empty()) {
     return log;
   }
-  const std::vector<GazeTrial> trials = find_trials(log, settings);
-  const GazeTrial trial = trial_by_name(trials, settings.trial);
+  const std::vector<GazeTrial> trials = find_trials(log);
+  const GazeTrial trial = trial_by_name(trials, which);
   return cut_to_trial(std::move(log), trial);
 }
 

@@ -112,6 +112,8 @@ std::string run_events_table(const GazeLog& log) {
   for (const GazeEvent& event : log.events) {
     if (event.type == GazeEventType::segment) {
       rows.push_back({event.begin_ns, event.end_ns, "recording", {}});
+    } else if (event.type == GazeEventType::trial) {
+      rows.push_back({event.begin_ns, event.end_ns, "trial", event.text});
     } else if (event.type == GazeEventType::message && !is_long_before(event.begin_ns)) {
       rows.push_back({event.begin_ns, event.begin_ns, "message", event.text});
     }
@@ -172,9 +174,9 @@ Json events_sidecar(Eye eye, bool has_stated) {
             {"Description", fmt::format("What the log states of the movements of the {} eye", to_string(eye))},
             {"OnsetSource", "timestamp"},
             {"duration", {{"Units", "s"}}},
-            {"trial_type", {{"Description", "fixation, saccade, segment or aoi; n/a of blinks and messages"}}},
+            {"trial_type", {{"Description", "fixation, saccade, segment, trial or aoi; n/a of blinks and messages"}}},
             {"blink", {{"Description", "1 for a blink, else 0"}}},
-            {"message", {{"Description", "The words of a message, or the name of an area of interest"}}}};
+            {"message", {{"Description", "The words of a message, or the name of a trial or of an area of interest"}}}};
   if (has_stated) {
     for (const auto& [column, unit, what] :
          {std::tuple("stated_duration", "s", "The duration by the tracker, which may count the last sample's own time"),
@@ -197,6 +199,7 @@ Json run_events_sidecar(const GazeLog& log) {
   json["trial_type"] = {{"Description", "What happened"},
                         {"Levels",
                          {{"recording", "Gaze was recorded without a pause"},
+                          {"trial", "A trial, of which the message is the name"},
                           {"message", "A message of the experiment or of the tracker"}}}};
   json["message"] = {{"Description", "The words of a message"}};
   return json;

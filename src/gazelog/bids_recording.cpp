@@ -116,14 +116,14 @@ int exponent_by_rate(const GazeFile& file, const DelimitedTable& table, std::siz
     }
   }
   throw Error(ErrorKind::input, place, "the sidecar does not state the timestamp's Units",
-              "give `gaze-time-unit`, or write \"timestamp\": {\"Units\": \"ms\"} into it");
+              "give `time-unit`, or write \"timestamp\": {\"Units\": \"ms\"} into it");
 }
 
 }  // namespace
 
-std::string read_bids_table(const std::string& path) {
+std::string read_bids_table(const std::string& path, std::uint64_t most_unpacked_bytes) {
   std::string bytes = read_file_bytes(path);
-  return utf8_text(is_gzip(bytes) ? unpack_gzip(bytes, path) : std::move(bytes));
+  return utf8_text(is_gzip(bytes) ? unpack_gzip(bytes, path, most_unpacked_bytes) : std::move(bytes));
 }
 
 Eye recorded_eye(const Sidecars& sidecars) {
@@ -141,8 +141,8 @@ BidsColumns read_bids_samples(const GazeFile& file, const Sidecars& sidecars, co
   std::vector<std::string> names = sidecars.texts("Columns");
   if (names.empty()) {
     throw Error(ErrorKind::input, file.path, "no sidecar names its Columns",
-                "put the ..._physio.json beside it, or name the columns: `gaze-format` generic `gaze-time-column` 1 "
-                "`gaze-x-column` 2 `gaze-y-column` 3");
+                "put the ..._physio.json beside it, or name the columns: `format` generic `time-column` 1 "
+                "`x-column` 2 `y-column` 3");
   }
   DelimitedTable table = open_headerless(file.text, '\t', names);
   BidsColumns c = find_columns(table, options, file.path);
@@ -246,6 +246,7 @@ void read_bids_events(const Sidecars& physio, const std::string& path, RawGaze& 
                    : text == "fixation" ? GazeEventType::fixation
                    : text == "saccade"  ? GazeEventType::saccade
                    : text == "segment"  ? GazeEventType::segment
+                   : text == "trial"    ? GazeEventType::trial
                    : text == "aoi"      ? GazeEventType::aoi
                                         : GazeEventType::message;
       event.text = is_missing(rows.cell(message)) ? "" : std::string(rows.cell(message));
@@ -274,7 +275,7 @@ StatedUnit stated_bids_unit(const Sidecars& sidecars, const BidsColumns& columns
   if (given != PositionUnit::automatic && (!is_understood || unit->each != 1)) {
     evidence = Evidence::option;
     if (!x.empty()) {
-      raw.warnings.push_back(fmt::format("{}: its Units of {} are '{}'; `gaze-unit` {} was given and is used", path,
+      raw.warnings.push_back(fmt::format("{}: its Units of {} are '{}'; `unit` {} was given and is used", path,
                                          columns.x_name, x.substr(0, 40), to_string(given)));
     }
     return {given};
@@ -289,7 +290,7 @@ StatedUnit stated_bids_unit(const Sidecars& sidecars, const BidsColumns& columns
               : x == y || y.empty() ? fmt::format("its Units of {} are '{}'", columns.x_name, x.substr(0, 40))
                                     : fmt::format("its Units are '{}' of {} and '{}' of {}", x.substr(0, 40),
                                                   columns.x_name, y.substr(0, 40), columns.y_name),
-              fmt::format("give `gaze-unit`, or write \"{}\": {{\"Units\": \"pixel\"}} into it", columns.x_name));
+              fmt::format("give `unit`, or write \"{}\": {{\"Units\": \"pixel\"}} into it", columns.x_name));
 }
 
 }  // namespace gazetrace

@@ -31,7 +31,8 @@ struct BidsColumns {
 };
 
 // The bytes of a table, unpacked.
-std::string read_bids_table(const std::string& path);
+std::string read_bids_table(const std::string& path,
+                            std::uint64_t most_unpacked_bytes = std::numeric_limits<std::uint64_t>::max());
 
 Eye recorded_eye(const Sidecars& sidecars);
 

@@ -68,8 +68,8 @@ PositionOrigin bids_screen_origin(const Sidecars& events, const GazeReadOptions&
   }
   throw Error(ErrorKind::input, events.source(screen_key("ScreenOrigin")),
               fmt::format("its ScreenOrigin is '{}'", stated),
-              from_right ? "give `gaze-flip-x`, which counts from the left what counts from the right"
-                         : "top left, bottom left and center can be read; else give `gaze-origin`");
+              from_right ? "give `flip-x`, which counts from the left what counts from the right"
+                         : "top left, bottom left and center can be read; else give `origin`");
 }
 
 void read_bids_screen(const Sidecars& events, RawGaze& raw) {

@@ -235,12 +235,12 @@ void plan_positions(ColumnPlan& plan, const Finder& find, const GazeColumns& dec
                             (directions_named && declared.x.empty() && declared.y.empty());
   if (is_direction) {
     plan.kind = GazeKind::direction;
-    source.x = find.required(declared.x, kDirectionX, "direction x", "`gaze-x-column`");
-    source.y = find.required(declared.y, kDirectionY, "direction y", "`gaze-y-column`");
-    source.z = find.required(declared.z, kDirectionZ, "direction z", "`gaze-z-column`");
+    source.x = find.required(declared.x, kDirectionX, "direction x", "`x-column`");
+    source.y = find.required(declared.y, kDirectionY, "direction y", "`y-column`");
+    source.z = find.required(declared.z, kDirectionZ, "direction z", "`z-column`");
   } else {
-    source.x = find.required(declared.x, kScreenX, "the horizontal position", "`gaze-x-column`");
-    source.y = find.required(declared.y, kScreenY, "the vertical position", "`gaze-y-column`");
+    source.x = find.required(declared.x, kScreenX, "the horizontal position", "`x-column`");
+    source.y = find.required(declared.y, kScreenY, "the vertical position", "`y-column`");
   }
   source.validity = find.optional(declared.validity, kValidity);
   source.confidence = find.optional(declared.confidence, kConfidence);
@@ -263,16 +263,16 @@ void plan_time_unit(ColumnPlan& plan, const ColumnHeading& heading, const GazeCo
   }
   const auto flag = time_exponent_of(declared.time_unit);
   if (flag && plan.time_exponent && *flag != *plan.time_exponent) {
-    plan.warnings.push_back(
-        fmt::format("{}: the header says that '{}' is in {}; `gaze-time-unit` {} was given and is used", place,
-                    heading.text, time_unit_text(*plan.time_exponent), time_unit_text(*flag)));
+    plan.warnings.push_back(fmt::format("{}: the header says that '{}' is in {}; `time-unit` {} was given and is used",
+                                        place, heading.text, time_unit_text(*plan.time_exponent),
+                                        time_unit_text(*flag)));
   }
   if (flag) {
     plan.time_exponent = flag;
   } else if (!heading.unit.empty() && !plan.time_exponent) {
     throw Error(ErrorKind::input, place,
                 fmt::format("unknown unit '{}' of time column '{}'", heading.unit, heading.text),
-                "use [s], [ms], [us] or [ns], or give `gaze-time-unit`");
+                "use [s], [ms], [us] or [ns], or give `time-unit`");
   }
 }
 
@@ -284,7 +284,7 @@ PositionUnit unit_of(const ColumnHeading& heading, const GazeColumns& declared, 
   const auto unit = position_unit_from(heading.unit);
   if (!unit && declared.position_unit == PositionUnit::automatic) {
     throw Error(ErrorKind::input, place, fmt::format("unknown unit '{}' of column '{}'", heading.unit, heading.text),
-                "use [1], [px], [mm], [cm] or [deg], or give `gaze-unit`");
+                "use [1], [px], [mm], [cm] or [deg], or give `unit`");
   }
   return unit.value_or(PositionUnit::automatic);
 }
@@ -297,7 +297,7 @@ void plan_position_unit(ColumnPlan& plan, const DelimitedTable& table, const Gaz
   if (plan.kind == GazeKind::direction) {
     if (flag != PositionUnit::automatic && flag != PositionUnit::unit_vector) {
       throw Error(ErrorKind::usage, place, fmt::format("directions of three columns cannot be in {}", to_string(flag)),
-                  "leave `gaze-unit` out, or name two columns");
+                  "leave `unit` out, or name two columns");
     }
     plan.unit = PositionUnit::unit_vector;
     return;
@@ -307,10 +307,10 @@ void plan_position_unit(ColumnPlan& plan, const DelimitedTable& table, const Gaz
   if (x != y && flag == PositionUnit::automatic) {
     throw Error(ErrorKind::input, place,
                 fmt::format("columns '{}' and '{}' are in different units", x_heading.text, y_heading.text),
-                "name two columns of one unit, or give `gaze-unit`");
+                "name two columns of one unit, or give `unit`");
   }
   if (flag != PositionUnit::automatic && x != PositionUnit::automatic && x != flag) {
-    plan.warnings.push_back(fmt::format("{}: the header says that '{}' is in {}; `gaze-unit` {} was given and is used",
+    plan.warnings.push_back(fmt::format("{}: the header says that '{}' is in {}; `unit` {} was given and is used",
                                         place, x_heading.text, to_string(x), to_string(flag)));
   }
   plan.unit = flag != PositionUnit::automatic ? flag : x;
@@ -339,7 +339,7 @@ std::size_t ColumnPlan::needed_cells() const {
 ColumnPlan plan_columns(const DelimitedTable& table, const GazeColumns& declared, const std::string& place) {
   const Finder find(table, place);
   ColumnPlan plan;
-  plan.time = find.required(declared.time, kTime, "time", "`gaze-time-column`");
+  plan.time = find.required(declared.time, kTime, "time", "`time-column`");
   plan_positions(plan, find, declared);
   plan_head(plan, find, declared);
   plan.eye = find.optional(declared.eye, kEye);

@@ -54,7 +54,7 @@ void conclude_unit(const RawGaze& raw, const GazeReadOptions& options, Conventio
   }
   if (given != PositionUnit::automatic && given != c.unit.value) {
     if (c.unit.value != PositionUnit::automatic) {
-      c.warnings.push_back(fmt::format("{}: positions of {} are in {}; `gaze-unit` {} was given and is used", raw.place,
+      c.warnings.push_back(fmt::format("{}: positions of {} are in {}; `unit` {} was given and is used", raw.place,
                                        raw.format, to_string(c.unit.value), to_string(given)));
     }
     c.unit = {given, Evidence::option, {}};
@@ -75,7 +75,7 @@ void conclude_origin(const RawGaze& raw, const GazeReadOptions& options, Convent
   }
   if (given != PositionOrigin::automatic && given != c.origin.value) {
     if (c.origin.value != PositionOrigin::automatic) {
-      c.warnings.push_back(fmt::format("{}: positions of {} count from the {}; `gaze-origin` {} was given and is used",
+      c.warnings.push_back(fmt::format("{}: positions of {} count from the {}; `origin` {} was given and is used",
                                        raw.place, raw.format, to_string(c.origin.value), to_string(given)));
     }
     c.origin = {given, Evidence::option, {}};
@@ -135,9 +135,8 @@ void conclude_axes(const RawGaze& raw, const GazeReadOptions& options, Conventio
   const GazeAxes own = c.axes.value;
   if (given != GazeAxes::automatic && given != own) {
     if (own != GazeAxes::automatic) {
-      c.warnings.push_back(
-          fmt::format("{}: directions of this log are in {} axes; `gaze-axes` {} was given and is used", raw.place,
-                      to_string(own), to_string(given)));
+      c.warnings.push_back(fmt::format("{}: directions of this log are in {} axes; `axes` {} was given and is used",
+                                       raw.place, to_string(own), to_string(given)));
     }
     c.axes = {given, Evidence::option, {}};
   }
@@ -179,11 +178,13 @@ Conventions conclude_conventions(const RawGaze& raw, const GazeReadOptions& opti
   c.swap_xy = options.swap_xy;
   c.flip_x = options.flip_x;
   c.flip_y = options.flip_y;
-  c.missing_value = options.missing_value ? options.missing_value : raw.declared.missing_value;
-  c.zero_is_missing = options.zero_is_missing;
+  c.zero_is_missing = options.missing_value == 0.0;  // besides the mark of the format
+  c.missing_value = options.missing_value && !(c.zero_is_missing && raw.declared.missing_value)
+                        ? options.missing_value
+                        : raw.declared.missing_value;
+  c.corner = options.corner.value_or(raw.declared.corner);
   c.unordered = options.unordered;
   c.eye = options.eye;
-  c.dominant_eye = options.dominant_eye;
   c.recording_geometry = raw.recording_geometry;
   if (c.form != PlaceForm::position) {
     conclude_axes(raw, options, c);

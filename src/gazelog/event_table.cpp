@@ -180,7 +180,7 @@ void refuse_other_tables(const GazeFile& file, bool is_named) {
       fmt::format("is a table of {} with one row for each ('{}', '{}'), and no gaze: what the eye did between is not "
                   "in it",
                   c.kind, table.headings[*c.begin].text, table.headings[c.end ? *c.end : *c.duration].text),
-      "read the log that it was made from, and give this table as its events with `gaze-events`");
+      "read the log that it was made from, and give this table as its events with `events`");
 }
 
 std::vector<GazeEvent> read_event_table(const std::string& path) {

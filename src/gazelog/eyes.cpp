@@ -435,20 +435,14 @@ void choose_eyes(GazeLog& log) {
 }
 
 void check_eye_choice(const GazeLog& log, const RowsOfEyes& rows) {
-  const Conventions& c = log.conventions;
-  const EyeChoice choice = c.eye;
+  const EyeChoice choice = log.conventions.eye;
   if ((choice == EyeChoice::left && rows.left() == 0) || (choice == EyeChoice::right && rows.right() == 0)) {
     no_such_eye(log, choice == EyeChoice::left ? "left" : "right");
-  }
-  if (choice == EyeChoice::dominant && !c.dominant_eye) {
-    throw Error(ErrorKind::usage, "`gaze-eye`", "which eye is the dominant one is not known",
-                "give `gaze-dominant` left or right");
   }
 }
 
 void choose_grouped_eyes(GazeLog& log, const RowsOfEyes& rows) {
-  const Conventions& c = log.conventions;
-  const EyeChoice choice = c.eye;
+  const EyeChoice choice = log.conventions.eye;
   const AnglePlane plane(log);
   const Evidence evidence = choice == EyeChoice::automatic ? Evidence::format : Evidence::option;
   if (choice == EyeChoice::left || choice == EyeChoice::right) {
@@ -466,11 +460,7 @@ void choose_grouped_eyes(GazeLog& log, const RowsOfEyes& rows) {
     return;
   }
   Eye preferred = Eye::cyclopean;
-  if (choice == EyeChoice::dominant) {
-    preferred = *c.dominant_eye;
-  } else if (choice == EyeChoice::best) {
-    preferred = better_eye(log, plane);
-  } else if (choice == EyeChoice::automatic) {
+  if (choice == EyeChoice::automatic) {
     if (const auto disparity = great_disparity_deg(log, plane)) {
       preferred = better_eye(log, plane);
       warn_of_disparity(log, *disparity, preferred);

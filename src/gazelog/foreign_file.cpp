@@ -20,7 +20,10 @@ constexpr std::string_view kExportAsCsv = "export it as CSV with a column of tim
 constexpr std::array kForeignKinds{
     ForeignKind{"SR_RESEARCH", "an EyeLink data file (.EDF)",
                 "run `edf2asc FILE.EDF`, and give the .asc file that it writes"},
-    ForeignKind{"\x89HDF\r\n"sv, "an HDF5 file, such as ioHub's of PsychoPy or MATLAB's of version 7.3", kExportAsCsv},
+    ForeignKind{
+        "\x89HDF\r\n"sv, "an HDF5 file, such as ioHub's of PsychoPy or MATLAB's of version 7.3",
+        "of ioHub: gazetrace gaze iohub FILE.hdf5 -o gaze.csv `unit` UNIT `screen-px` W,H; else export it as CSV "
+        "with a column of time and columns of gaze"},
     ForeignKind{"MATLAB 5.0 MAT-file", "a MATLAB file (.mat)", "write it as CSV with writetable() or writematrix()"},
     ForeignKind{"PK\x03\x04"sv, "a spreadsheet (.xlsx) or another zip archive",
                 "save the sheet as CSV, or unpack the archive and give the file of gaze in it"},

@@ -53,8 +53,8 @@ std::vector<GazepointPoint> find_points(const DelimitedTable& table, const std::
     const bool fixations = table.find("FPOGX").has_value();
     throw Error(ErrorKind::input, place,
                 fixations ? "there is only FPOG, the mean of the fixation so far" : "there is no point of gaze (BPOGX)",
-                "export all gaze with BPOG, or read FPOGX and FPOGY by `gaze-format` generic with "
-                "`gaze-x-column` and `gaze-y-column`");
+                "export all gaze with BPOG, or read FPOGX and FPOGY by `format` generic with "
+                "`x-column` and `y-column`");
   }
   return points;
 }
@@ -82,7 +82,7 @@ GazepointColumns find_gazepoint_columns(const DelimitedTable& table, const GazeR
   c.seconds = column_starting(table, "TIME");
   c.ticks = column_starting(table, "TIMETICK");
   if (!c.seconds && !c.ticks && options.columns.time.empty()) {
-    throw Error(ErrorKind::input, place, "there is no column TIME(...)", "name it with `gaze-time-column`");
+    throw Error(ErrorKind::input, place, "there is no column TIME(...)", "name it with `time-column`");
   }
   c.pupils = find_pupils(table);
   c.time = time_column(table, options, c.seconds ? *c.seconds : c.ticks.value_or(0), place);

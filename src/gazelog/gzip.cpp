@@ -32,9 +32,9 @@ bool is_gzip(std::string_view bytes) {
   return bytes.starts_with("\x1F\x8B");
 }
 
-std::string unpack_gzip(std::string_view bytes, const std::string& path) {
+std::string unpack_gzip(std::string_view bytes, const std::string& path, std::uint64_t most_bytes) {
   constexpr std::size_t kFloor = std::size_t{16} << 20U;
-  const std::size_t limit = kFloor + 400 * bytes.size();
+  const std::size_t limit = std::min<std::uint64_t>(kFloor + 400 * bytes.size(), most_bytes);
   Inflater inflater;
   if (!inflater.good()) {
     throw Error(ErrorKind::runtime, path, "gzip data cannot be unpacked: no memory");
@@ -57,7 +57,8 @@ std::string unpack_gzip(std::string_view bytes, const std::string& path) {
     text.resize(filled + room - stream.avail_out);
     if (text.size() > limit) {
       throw Error(ErrorKind::input, path, fmt::format("unpacks to more than {} MiB", limit >> 20U),
-                  "no recording is packed that densely; unpack it first if it is one: gunzip");
+                  limit == most_bytes ? "that is half of the memory that may be taken (`max-memory`)"
+                                      : "no recording is packed that densely; unpack it first if it is one: gunzip");
     }
     if (status == Z_STREAM_END) {
       const std::string_view rest = bytes.substr(used);

@@ -159,7 +159,7 @@ void check_span(const GazeLog& log) {
     throw Error(
         ErrorKind::input, fmt::format("{}:{}", log.source, std::max(first->row, last->row)),
         fmt::format("the stamps reach from {} to {} ns, over more than a hundred years", first->t_ns, last->t_ns),
-        "check the unit of the time column (`gaze-time-unit`), or remove the rows with a damaged time");
+        "check the unit of the time column (`time-unit`), or remove the rows with a damaged time");
   }
 }
 

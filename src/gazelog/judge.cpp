@@ -27,7 +27,7 @@ ReadingDoubt small_numbers_around_zero(const EyeMotion& m) {
           fmt::format("the unit of x and y is undecided: PsychoPy's {}, degrees or radians?",
                       is_as_high_as_wide ? "norm" : "height or norm units"),
           m.in_words() + "; " + angles,
-          is_as_high_as_wide ? "`gaze-unit` norm, deg or rad" : "`gaze-unit` height, norm, deg or rad"};
+          is_as_high_as_wide ? "`unit` norm, deg or rad" : "`unit` height, norm, deg or rad"};
 }
 
 ReadingDoubt numbers_of_angles(const EyeMotion& m) {
@@ -36,14 +36,14 @@ ReadingDoubt numbers_of_angles(const EyeMotion& m) {
           fmt::format("the unit of x and y is undecided: {}?",
                       has_both_signs ? "degrees or centimetres" : "pixels, centimetres or degrees"),
           fmt::format("{}; as degrees {}", m.in_words(), m.if_degrees(1)),
-          has_both_signs ? "`gaze-unit` deg or cm" : "`gaze-unit` px, cm or deg"};
+          has_both_signs ? "`unit` deg or cm" : "`unit` px, cm or deg"};
 }
 
 ReadingDoubt inferred(const UnitReading& reading) {
   return {"unit-inferred",
           fmt::format("the unit of x and y is not stated, only inferred: {}",
                       reading.unit == PositionUnit::px ? "pixels" : "fractions of the display"),
-          reading.evidence, fmt::format("`gaze-unit` {}", to_string(reading.unit)), false};
+          reading.evidence, fmt::format("`unit` {}", to_string(reading.unit)), false};
 }
 
 bool lies_on(const EyeMotion& m, const Vec2d& size) {
@@ -132,18 +132,18 @@ class Judge {
     if (!is_centered && percent(negative) > (count < kFew ? 50 : 25)) {
       add({"origin", "the positions count from the center of the display rather than from its corner",
            fmt::format("{:.0f} % of them are negative{}{}", percent(negative), lie.empty() ? "" : ", and ", lie),
-           "`gaze-origin` center"},
+           "`origin` center"},
           c_.origin.evidence);
     } else if (percent(beside) > 50 && !lie.empty()) {
       add({"beside-the-display", "most positions lie beside the display: its size, the unit or the origin is wrong",
-           lie, "another `gaze-unit` or `screen-px`, or `gaze-origin` top-left"},
+           lie, "another `unit` or `screen-px`, or `origin` top-left"},
           c_.unit.evidence == Evidence::option || c_.origin.evidence == Evidence::option ? Evidence::option
                                                                                          : Evidence::header);
     } else if (is_centered && percent(first_quarter) > 99 && count > kEnough) {
       add({"origin", "gaze would lie in one quarter of the display alone, to the right of its center and above",
            fmt::format("{:.0f} % of the numbers are not negative, though they count from the center",
                        percent(first_quarter)),
-           "another `gaze-unit`, or `gaze-origin` top-left"},
+           "another `unit`, or `origin` top-left"},
           c_.unit.evidence == Evidence::option ? Evidence::option : c_.origin.evidence);
     }
   }
@@ -184,7 +184,7 @@ class Judge {
     if (factor && *factor > kFarTooSmall * degrees &&
         degrees_of_unit() * std::max(motion->x.spread(), motion->y.spread()) < kSmallDeg) {
       add({"position-unit", fmt::format("the positions can hardly be in {}", to_string(c_.unit.value)),
-           fmt::format("{}; so {}", motion->in_words(), motion->if_degrees(degrees)), "another `gaze-unit`"},
+           fmt::format("{}; so {}", motion->in_words(), motion->if_degrees(degrees)), "another `unit`"},
           c_.unit.evidence);
     }
   }
@@ -221,7 +221,7 @@ class Judge {
            fmt::format("their lengths are {:.3g} in the median, 80 % of them {:.3g} to {:.3g}, and a direction has the "
                        "length 1",
                        length, least, most),
-           "`gaze-x-column` and `gaze-y-column`"},
+           "`x-column` and `y-column`"},
           Evidence::header);
       return;
     }
@@ -241,12 +241,12 @@ class Judge {
                "in {} axes; they look ahead in unity (x to the right), in sranipal (x to the left) and in cv (y "
                "down)",
                to_string(c_.axes.value)),
-           "`gaze-axes` unity, sranipal or cv"},
+           "`axes` unity, sranipal or cv"},
           c_.axes.evidence);
     } else if (const double angle = lower_quantile(aside, 0.5); angle > kLargestAngle) {
       add({"looks-aside", fmt::format("the eye would look {:.0f} degrees aside for most of the time", angle),
            "the angle of the directions from straight ahead, in the median; an eye turns by 30 degrees",
-           "`gaze-axes`, `gaze-x-column` and `gaze-z-column`"},
+           "`axes`, `x-column` and `z-column`"},
           Evidence::header);
     }
   }
@@ -289,7 +289,7 @@ UnitReading read_unit(const RawRows& rows, const RawGaze& raw, const DisplayGeom
     reading.is_plain = lies_on(m, px) && !may_be_mm;
     if (may_be_mm) {
       reading.doubt = ReadingDoubt{"position-unit", "the unit of x and y is undecided: pixels or millimetres?",
-                                   m.in_words() + ", and the display's size is known in both", "`gaze-unit` px or mm"};
+                                   m.in_words() + ", and the display's size is known in both", "`unit` px or mm"};
     } else if (!reading.is_plain) {
       reading.doubt = inferred(reading);
       reading.doubt->setting += px.x > 0 ? "" : " `screen-px` W,H";

@@ -81,7 +81,7 @@ auto with_a_hint_of_the_format(const std::string& named, const GazeFile& file, c
     if (guesses.empty() || guesses.front().format->name == named || guesses.front().confidence < kSure) {
       throw;
     }
-    throw Error(ErrorKind::input, "", error.what(), "it looks like `gaze-format` " + guesses.front().format->name);
+    throw Error(ErrorKind::input, "", error.what(), "it looks like `format` " + guesses.front().format->name);
   }
 }
 
@@ -109,7 +109,7 @@ std::optional<RawFault> join_decimal_commas(GazeFile& file, const GazeReadOption
   const std::string problem = fmt::format(
       "rows hold more cells than the {} columns: numbers have decimal commas, and commas separate the columns, too",
       file.fractions.size());
-  return RawFault{"decimal-commas", file.path, problem, "give `gaze-decimal-comma`", "`gaze-decimal-comma`", problem};
+  return RawFault{"decimal-commas", file.path, problem, "give `decimal-comma`", "`decimal-comma`", problem};
 }
 
 // Says so where the numbers of a table have decimal commas. The first rows decide.
@@ -155,7 +155,7 @@ RawGaze read_opened(GazeFile& file, const std::string& path, const GazeReadOptio
     }
     if (guesses.empty()) {
       throw Error(ErrorKind::input, path, "is not a gaze log of a known format",
-                  "give a CSV or TSV with a header, or name the format with `gaze-format`");
+                  "give a CSV or TSV with a header, or name the format with `format`");
     }
     format = guesses.front().format;
     confidence = guesses.front().confidence;
@@ -190,7 +190,7 @@ auto with_file(const std::string& path, const GazeReadOptions& options, const Ac
   if (!options.format.empty()) {
     format_by_name(options.format);  // a name that is not known is refused before anything is read
   }
-  GazeFile file = open_log_file(path);
+  GazeFile file = open_log_file(path, options.most_unpacked_bytes);
   return with_a_hint_of_the_format(options.format, file, [&] { return act(file); });
 }
 
@@ -270,6 +270,8 @@ std::string_view to_string(GazeEventType type) {
       return "message";
     case GazeEventType::segment:
       return "segment";
+    case GazeEventType::trial:
+      return "trial";
     case GazeEventType::aoi:
       return "aoi";
   }

@@ -149,11 +149,11 @@ void hide_separator_line(std::string& text) {
 
 }  // namespace
 
-GazeFile open_log_file(const std::string& path) {
+GazeFile open_log_file(const std::string& path, std::uint64_t most_unpacked_bytes) {
   GazeFile file{file_of(path), {}};
   std::string bytes = bytes_with_short_lines(file.path);
   if (is_gzip(bytes)) {
-    bytes = unpack_gzip(bytes, path);
+    bytes = unpack_gzip(bytes, path, most_unpacked_bytes);
     if (!is_binary(file.path, bytes)) {
       LineLengths(path).add(bytes);
     }

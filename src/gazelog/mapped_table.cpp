@@ -214,10 +214,10 @@ int time_exponent_by_statistics(const GazeFile& file, const DelimitedTable& tabl
   if (!exponent) {
     throw Error(ErrorKind::input, place,
                 fmt::format("the unit of time column '{}' is not stated and cannot be guessed from its steps", name),
-                "give `gaze-time-unit`, or write it into the header: t[ms]");
+                "give `time-unit`, or write it into the header: t[ms]");
   }
-  raw.warnings.push_back(fmt::format("{}: guessed from its steps that '{}' is in {}; state it with `gaze-time-unit`",
-                                     place, name, time_unit_text(*exponent)));
+  raw.warnings.push_back(fmt::format("{}: guessed from its steps that '{}' is in {}; state it with `time-unit`", place,
+                                     name, time_unit_text(*exponent)));
   return *exponent;
 }
 
@@ -272,7 +272,7 @@ void add_row_warnings(RawGaze& raw, const RowReader& rows, const ColumnPlan& pla
   }
   const OptionalColumn& validity = plan.sources.front().validity;
   if (const std::string good = validity ? rows.tally().reversed() : ""; !good.empty()) {
-    const std::string setting = fmt::format("`gaze-valid-values` {}", good);
+    const std::string setting = fmt::format("`valid-values` {}", good);
     const std::string problem = rows.tally().in_words(table.headings[*validity].text);
     raw.faults.push_back({"validity", place_of_header(raw, table), problem, "give " + setting, setting, problem});
   }
@@ -280,7 +280,7 @@ void add_row_warnings(RawGaze& raw, const RowReader& rows, const ColumnPlan& pla
   if (validity && std::none_of(raw.rows.begin(), raw.rows.end(), is_good)) {
     raw.warnings.push_back(
         fmt::format("{}: no row is valid by column '{}', which holds: {}; say with "
-                    "`gaze-valid-values` which of them are good",
+                    "`valid-values` which of them are good",
                     raw.source, table.headings[*validity].text, fmt::join(rows.validity().seen(), ", ")));
   }
 }
@@ -344,7 +344,7 @@ RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, con
   if (!table.has_header && (columns.time.empty() || (columns.x.empty() && columns.left.x.empty()))) {
     throw Error(ErrorKind::input, place,
                 fmt::format("there is no header, only {} columns of numbers", table.headings.size()),
-                "say by number which is which: `gaze-time-column` 1 `gaze-x-column` 2 `gaze-y-column` 3");
+                "say by number which is which: `time-column` 1 `x-column` 2 `y-column` 3");
   }
   const GazetracePreamble preamble = read_preamble(file, table);
   const GazeColumns with_z = style == ValidityStyle::any ? with_z_beside(file, table, columns) : columns;
@@ -357,7 +357,7 @@ RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, con
   raw.recording_geometry = preamble.geometry;
   raw.pixels_per_degree = preamble.pixels_per_degree;
   if (preamble.is_scene_camera) {
-    raw.way_out = "`gaze-frame` scene-camera looks at it";
+    raw.way_out = "`frame` scene-camera looks at it";
     raw.kind = GazeKind::scene_camera;
   }
   raw.pupil_unit = plan.pupil_unit;

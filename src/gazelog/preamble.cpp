@@ -78,8 +78,9 @@ bool read_record(std::string_view key, std::string_view rest, const PreambleLine
   Words words(key, rest, place);
   if (key == "event") {
     GazeEvent event;
-    event.type = words.one_of({GazeEventType::fixation, GazeEventType::saccade, GazeEventType::blink,
-                               GazeEventType::message, GazeEventType::segment, GazeEventType::aoi});
+    event.type =
+        words.one_of({GazeEventType::fixation, GazeEventType::saccade, GazeEventType::blink, GazeEventType::message,
+                      GazeEventType::segment, GazeEventType::trial, GazeEventType::aoi});
     event.eye = words.one_of({Eye::left, Eye::right, Eye::cyclopean});
     event.begin_ns = words.time_ns();
     event.end_ns = words.time_ns();

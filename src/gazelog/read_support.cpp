@@ -20,8 +20,8 @@ TimeScale declare_time(RawGaze& raw, const GazeReadOptions& options, std::string
                        Evidence evidence, const std::string& place) {
   const auto given = time_exponent_of(options.columns.time_unit);
   if (given && *given != stated) {
-    raw.warnings.push_back(fmt::format("{}: {} says that '{}' is in {}; `gaze-time-unit` {} was given and is used",
-                                       place, evidence == Evidence::header ? "the header" : "the format", column,
+    raw.warnings.push_back(fmt::format("{}: {} says that '{}' is in {}; `time-unit` {} was given and is used", place,
+                                       evidence == Evidence::header ? "the header" : "the format", column,
                                        time_unit_text(stated), time_unit_text(*given)));
   }
   raw.declared.time_column = {

@@ -24,7 +24,7 @@ void add_recording(RawGaze& raw, GazeRecording recording, std::int64_t line) {
   if (raw.recordings.size() == kMostRecordings) {
     throw Error(ErrorKind::input, fmt::format("{}:{}", raw.source, line),
                 fmt::format("there are more than {} recordings up to here", kMostRecordings),
-                "name the column that tells recordings apart with `gaze-recording-column`, or divide the file");
+                "name the column that tells recordings apart with `recording-column`, or divide the file");
   }
   go_on_with(raw, raw.recordings.size(), line);
   raw.recordings.push_back(std::move(recording));

@@ -164,7 +164,7 @@ ToFractions::ToFractions(const Conventions& c, const std::string& place)
   if (unit_ == PositionUnit::deg && origin_ != PositionOrigin::center) {
     throw Error(ErrorKind::usage, place,
                 fmt::format("positions in degrees cannot count from the {}", to_string(origin_)),
-                "degrees count from straight ahead: `gaze-origin` center");
+                "degrees count from straight ahead: `origin` center");
   }
   if (unit_ == PositionUnit::norm || unit_ == PositionUnit::height) {
     const bool is_norm = unit_ == PositionUnit::norm;

@@ -74,7 +74,7 @@ void order_samples(GazeLog& log, UnorderedPolicy policy) {
   if (order.backward_steps > 0) {
     if (policy == UnorderedPolicy::error) {
       throw Error(ErrorKind::input, place_of(log, order.first_backward_row), unordered_problem(order),
-                  "sort the log, or use `gaze-order` sort");
+                  "sort the log, or use `order` sort");
     }
     std::stable_sort(log.samples.begin(), log.samples.end(),
                      [](const GazeSample& a, const GazeSample& b) { return a.t_ns < b.t_ns; });
@@ -119,7 +119,7 @@ void drop_duplicates(GazeLog& log, UnorderedPolicy policy) {
                   loses_much(order) ? fmt::format("dropping repeats would keep only {} of {} rows: export again with "
                                                   "stamps that differ, or look at it with 'gazetrace gaze inspect'",
                                                   kept, rows)
-                                    : fmt::format("remove one of them, or use `gaze-order` sort, which keeps the last "
+                                    : fmt::format("remove one of them, or use `order` sort, which keeps the last "
                                                   "of equal stamps, {} of {} rows",
                                                   kept, rows));
     }
@@ -254,7 +254,7 @@ void mend_stamps(RawGaze& raw, UnorderedPolicy policy) {
   if (stamps.pairs * 20 > raw.rows.size() * 9) {
     if (policy != UnorderedPolicy::pairs) {
       add_fault(raw, "pairs", 1, "every time stands twice, at different places: the stamps are too coarse for the rate",
-                "`gaze-order` pairs");
+                "`order` pairs");
     } else {
       const auto half_ns = static_cast<std::int64_t>(stamps.step_ns / 2);
       const RawRows& rows = raw.rows;
@@ -271,7 +271,7 @@ void mend_stamps(RawGaze& raw, UnorderedPolicy policy) {
       add_fault(raw, "counter-overflow", stamps.backward.front().row,
                 fmt::format("the counter of the clock overflowed: {} ns is followed by {} ns",
                             stamps.backward.front().before_ns, stamps.backward.front().after_ns),
-                "`gaze-order` unwrap");
+                "`order` unwrap");
     } else {
       auto step = stamps.backward.begin();
       std::int64_t added_ns = 0;

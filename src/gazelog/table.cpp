@@ -198,7 +198,7 @@ void DelimitedTable::check_unique(std::size_t column) const {
           ErrorKind::input, place,
           fmt::format("columns {} ('{}') and {} ('{}') have one name", std::min(column, i) + 1,
                       headings[std::min(column, i)].text, std::max(column, i) + 1, headings[std::max(column, i)].text),
-          "rename the one that is not meant, or name columns by number, such as `gaze-x-column` 2");
+          "rename the one that is not meant, or name columns by number, such as `x-column` 2");
     }
   }
 }
@@ -226,6 +226,7 @@ bool DelimitedTable::has_all(std::initializer_list<std::string_view> names) cons
 }
 
 DelimitedTable open_table(const GazeFile& file) {
+  constexpr std::size_t kMostColumns = 16384;
   DelimitedTable table;
   table.has_quotes = file.text.find('"') != std::string::npos;
   LineReader lines(file.text);
@@ -244,6 +245,10 @@ DelimitedTable open_table(const GazeFile& file) {
     table.has_header = !is_number_row(cells);
     table.header = line;
     table.header_line = lines.number();
+    if (cells.size() > kMostColumns) {
+      throw Error(ErrorKind::input, place_of(file, lines.number()), fmt::format("has {} columns", cells.size()),
+                  fmt::format("no tracker or spreadsheet writes more than {}: is this a gaze log?", kMostColumns));
+    }
     while (cells.size() > 1 && trim(cells.back()).empty()) {
       cells.pop_back();  // trailing separators
     }
@@ -459,7 +464,7 @@ std::int64_t TableRows::time_ns(std::size_t column, const TimeScale& scale) {
   if (is_time_of_day(text)) {
     fail(fmt::format("time '{}' is a time of day", text.substr(0, 60)),
          "write times as numbers, such as milliseconds from the beginning, or name the column of the tracker's own "
-         "clock with `gaze-time-column`");
+         "clock with `time-column`");
   }
   fail(fmt::format("time '{}' is not a number", text.substr(0, 60)), "remove or mend the row");
 }

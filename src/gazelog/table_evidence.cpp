@@ -94,7 +94,7 @@ void find_sum_of_eyes(const GazeFile& file, const DelimitedTable& table, const C
     return;
   }
   const std::string y = table.headings[plan.sources.front().y].text;
-  const std::string setting = fmt::format("`gaze-x-column` {} `gaze-y-column` {}", table.headings[*left].text,
+  const std::string setting = fmt::format("`x-column` {} `y-column` {}", table.headings[*left].text,
                                           y + table.headings[*left].text.substr(name.size()));
   const std::string problem = fmt::format("'{}' is the sum of '{}' and '{}', not their mean, in {} of {} rows", name,
                                           table.headings[*left].text, table.headings[*right].text, sums, count);

@@ -48,7 +48,7 @@ std::optional<BetterUnit> doubt_angles_and_lengths(const Positions& p, PositionU
   const bool is_length = stated == PositionUnit::mm || stated == PositionUnit::cm;
   const bool from_center = origin == PositionOrigin::center;
   if (is_length && !from_center && most < 1.5 && spread > 0.02) {
-    return BetterUnit{"fractions of the display", PositionUnit::fraction, "`gaze-unit` fraction"};
+    return BetterUnit{"fractions of the display", PositionUnit::fraction, "`unit` fraction"};
   }
   const Vec2d size = stated == PositionUnit::mm ? size_mm : size_cm;
   const Vec2d reach = from_center ? Vec2d{0.5 * size.x, 0.5 * size.y} : size;
@@ -74,13 +74,13 @@ std::optional<BetterUnit> doubt_angles_and_lengths(const Positions& p, PositionU
   };
   const PositionOrigin better_origin = centered ? PositionOrigin::center : PositionOrigin::top_left;
   const std::string_view counts_from = centered == from_center ? ""
-                                       : centered              ? " `gaze-origin` center"
-                                                               : " `gaze-origin` top-left";
+                                       : centered              ? " `origin` center"
+                                                               : " `origin` top-left";
   if (stated != PositionUnit::mm && fits(size_mm)) {
-    return BetterUnit{"millimetres", PositionUnit::mm, fmt::format("`gaze-unit` mm{}", counts_from), better_origin};
+    return BetterUnit{"millimetres", PositionUnit::mm, fmt::format("`unit` mm{}", counts_from), better_origin};
   }
   if (fits(size_px) || (is_deg && !is_known(size_px))) {
-    return BetterUnit{"pixels", PositionUnit::px, fmt::format("`gaze-unit` px{}", counts_from), better_origin};
+    return BetterUnit{"pixels", PositionUnit::px, fmt::format("`unit` px{}", counts_from), better_origin};
   }
   return is_deg ? std::optional(BetterUnit{"something else", PositionUnit::automatic, ""}) : std::nullopt;
 }
@@ -90,13 +90,13 @@ std::optional<BetterUnit> doubt_places(const Positions& p, PositionUnit unit, do
   const auto& [x, y, most, spread] = p;
   const bool both_signs = (x.low < 0 && x.high > 0) || (y.low < 0 && y.high > 0);
   if (unit == PositionUnit::px && most < 1.5 && spread > 0.02) {
-    return BetterUnit{"fractions of the display", PositionUnit::fraction, "`gaze-unit` fraction"};
+    return BetterUnit{"fractions of the display", PositionUnit::fraction, "`unit` fraction"};
   }
   if (unit == PositionUnit::px && both_signs && most < 60 && most < 0.12 * width && spread > 0.5) {
-    return BetterUnit{"degrees from straight ahead", PositionUnit::deg, "`gaze-unit` deg", PositionOrigin::center};
+    return BetterUnit{"degrees from straight ahead", PositionUnit::deg, "`unit` deg", PositionOrigin::center};
   }
   if (unit == PositionUnit::fraction && !(most < 5)) {
-    return BetterUnit{"pixels", PositionUnit::px, "`gaze-unit` px"};
+    return BetterUnit{"pixels", PositionUnit::px, "`unit` px"};
   }
   return std::nullopt;
 }
@@ -198,7 +198,7 @@ std::optional<ReadingDoubt> doubt_position_unit(const RawGaze& raw, const Conven
     other.origin.value = PositionOrigin::center;
     return ReadingDoubt{"origin", "the positions count from the center of the display, not its top left",
                         fmt::format("statistics: {} {}{}", seen, to_string(unit), read_so(raw, rows, other)),
-                        "`gaze-origin` center"};
+                        "`origin` center"};
   }
   return std::nullopt;
 }

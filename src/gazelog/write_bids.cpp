@@ -71,7 +71,7 @@ std::vector<File> files_of(const GazeLog& log, const std::string& path) {
   }
   if (log.kind == GazeKind::scene_camera) {
     throw Error(ErrorKind::input, log.source, "gaze on a scene camera's picture has no coordinate system in BIDS",
-                "convert to gazetrace CSV, or use `gaze-frame` head");
+                "convert to gazetrace CSV, or use `frame` head");
   }
   std::vector<File> files;
   const std::vector<BidsRecording> recordings = bids_recordings(log);

@@ -64,9 +64,8 @@ std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
   const fs::path camera_path(job.camera_path);
   // COLMAP keeps the lenses in a file beside that of its pictures.
   const fs::path lenses = camera_path.filename() == "images.txt" ? camera_path.parent_path() / "cameras.txt" : "";
-  std::vector<std::string> files =
-      existing({job.environment, job.camera_path, lenses.string(), job.gaze.path, job.gaze.columns_file,
-                job.screen.name, job.recording_screen, ocio_file(job), curve_file(job)});
+  std::vector<std::string> files = existing({job.environment, job.camera_path, lenses.string(), job.gaze.path,
+                                             job.screen.name, job.recording_screen, ocio_file(job), curve_file(job)});
   if (!job.scene.empty()) {
     const std::vector<std::string> scene = scene_files(job.scene, job.allow_outside);
     files.insert(files.end(), scene.begin(), scene.end());

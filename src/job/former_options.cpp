@@ -33,10 +33,13 @@ std::vector<FormerOption> table_of_this_version() {
   return {
 #define GAZETRACE_RENAMED(before, now, why) former_option(FormerKind::renamed, before, now, why),
 #define GAZETRACE_GONE(before, instead) former_option(FormerKind::gone, before, "", instead),
+#define GAZETRACE_IMPORTED(before, now) \
+  former_option(FormerKind::gone, before, "", "it is said once: gazetrace gaze import LOG -o gaze.csv " now),
 #define GAZETRACE_ELSEWHERE(name, here) former_option(FormerKind::elsewhere, name, "", here),
 #include "job/schema/renamed_options.def"
 #undef GAZETRACE_RENAMED
 #undef GAZETRACE_GONE
+#undef GAZETRACE_IMPORTED
 #undef GAZETRACE_ELSEWHERE
   };
 }

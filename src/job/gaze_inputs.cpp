@@ -8,6 +8,7 @@
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_process.hpp"
+#include "gazetrace/job_schema.hpp"
 #include "job/gaze_inputs.hpp"
 #include "job/screen.hpp"
 
@@ -26,15 +27,45 @@ GazeLog fixed_gaze(const Vec2d& at) {
   return log;
 }
 
+// Whether a message names a setting that only the importer has.
+bool names_reading(const std::string& message) {
+  const OptionSchema<GazeFileSettings> taken = gaze_choice_schema();
+  const OptionSchema<GazeFileSettings> all = gaze_import_schema();
+  for (std::size_t open = message.find('`'); open != std::string::npos; open = message.find('`', open + 1)) {
+    const std::size_t close = message.find('`', open + 1);
+    const std::string name = close == std::string::npos ? "" : message.substr(open + 1, close - open - 1);
+    if (all.find(name) != nullptr && taken.find(name) == nullptr) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Where a file is read without being imported, settings of the importer are no way out by themselves.
+GazeLog load_with_a_way_out(const std::string& path, const GazeReadOptions& options) {
+  try {
+    return load_gaze_log(path, options);
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (options.accepts_inferred || message.find("gaze import ") != std::string::npos || !names_reading(message)) {
+      throw;
+    }
+    throw Error(error.kind(), "", message, fmt::format("which gazetrace gaze import {} -o gaze.csv takes", path));
+  }
+}
+
 // `screen` is the screen on which the pictures are viewed; it describes the recording only where nothing else does.
 GazeLog read_job_gaze(const JobSettings& job) {
   GazeReadOptions options = read_options(job.gaze, {});
   options.fallback_display = screen_geometry(job.screen);
+  if (job.max_memory.bytes > 0) {
+    options.most_unpacked_bytes = job.max_memory.bytes / 2;  // its rows take as much again
+  }
   options.allow_outside = job.allow_outside;
   if (!job.recording_screen.empty()) {
     options.display = known_screen(job.recording_screen, "`recording-screen`");
   }
-  return chosen_trial(load_gaze_log(job.gaze.path, options), job.gaze.trials);
+  return chosen_trial(load_with_a_way_out(job.gaze.path, options), job.gaze.trial);
 }
 
 // Size and distance that are given for a log of pixels alone are those of the recording, and of the pictures as well:
@@ -146,11 +177,14 @@ GazeReadOptions read_options(const GazeFileSettings& gaze, const ScreenSettings&
   options.min_confidence = gaze.min_confidence.value_or(options.min_confidence);
   options.display = screen_geometry(screen);
   options.eye_cm = screen.eye_cm;
+  options.most_unpacked_bytes = most_memory_bytes() / 2;
   return options;
 }
 
 GazeLog read_gaze_file(const GazeFileSettings& gaze, const ScreenSettings& screen) {
-  return chosen_trial(load_gaze_log(gaze.path, read_options(gaze, screen)), gaze.trials);
+  GazeLog log = load_with_a_way_out(gaze.path, read_options(gaze, screen));
+  name_trials(log, gaze.trial_rules);
+  return chosen_trial(std::move(log), gaze.trial);
 }
 
 std::optional<GazeLog> gaze_of_job(const JobSettings& job, std::int64_t& taken_off_ns) {

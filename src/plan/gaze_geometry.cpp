@@ -119,7 +119,7 @@ GazeGeometry::GazeGeometry(const CameraPath& camera, const GazeLog* log, const P
   if (log != nullptr && log->kind == GazeKind::scene_camera) {
     throw Error(ErrorKind::input, log->source,
                 "gaze on a scene camera's picture is neither a position on a display nor a direction from the eye",
-                "use a log mapped to a surface, or `gaze-frame` head");
+                "use a log mapped to a surface, or `frame` head");
   }
   const bool on_screen = log != nullptr && !directions;
   if (on_screen) {

@@ -36,12 +36,12 @@ SCREEN = ["--screen-px", "1280,1024", "--screen-cm", "38,30.2", "--screen-distan
 RECORDINGS = [
     ("eyelink-asc/bino1000.asc", []), ("eyelink-asc/mono500.asc", []), ("eyelink-asc/bino1000_blinks.asc", []),
     ("tobii-studio-tsv/data.tsv", []), ("tobii-pro-lab-tsv/mobile_mapped_excerpt.tsv", []),
-    ("tobii-glasses2/livedata.json.gz", ["--gaze-frame", "head"]), ("tobii-glasses3/gazedata.gz", ["--gaze-frame", "head"]),
-    ("pupil-core/gaze_positions.csv", ["--gaze-frame", "head"]),
-    ("pupil-core/gaze_positions_with_monocular.csv", ["--gaze-frame", "head"]),
-    ("pupil-invisible-cloud/gaze.csv", ["--gaze-frame", "head"]),
-    ("pupil-invisible-cloud/trampoline_02_gaze.csv", ["--gaze-frame", "head"]),
-    ("pupil-neon-native/gaze ps1.raw", ["--gaze-frame", "head"]),
+    ("tobii-glasses2/livedata.json.gz", ["--frame", "head"]), ("tobii-glasses3/gazedata.gz", ["--frame", "head"]),
+    ("pupil-core/gaze_positions.csv", ["--frame", "head"]),
+    ("pupil-core/gaze_positions_with_monocular.csv", ["--frame", "head"]),
+    ("pupil-invisible-cloud/gaze.csv", ["--frame", "head"]),
+    ("pupil-invisible-cloud/trampoline_02_gaze.csv", ["--frame", "head"]),
+    ("pupil-neon-native/gaze ps1.raw", ["--frame", "head"]),
     ("smi-iview-txt/recording1_Samples.txt", []), ("arff/gaze.arff", []),
     ("vive-pro-eye/TESTNA01_2D_Fist3.csv", []), ("vive-pro-eye/TESTNA01_360VR_Fist3.csv", []),
     ("vive-pro-eye/TESTVA03_2D_Spread9_header_only.csv", []), ("pico-neo3-pro/boxing_VR.csv", []),
@@ -278,7 +278,7 @@ def peers_part(program, samples, table):
             found, doubts = {}, {}
             for method in ("ivt", "idt", "adaptive"):
                 found[method], doubts[method] = gazetrace(program, path, method, "--device", "desktop")
-            found["log"], _ = gazetrace(program, log, "log", *options)
+            found["log"], _ = gazetrace(program, path, "log")
             if not found["log"] or not any(movement == "fixation" for movement, *_ in found["log"]):
                 found["log"] = None
             for peer, detect in PEERS.items():

@@ -91,7 +91,7 @@ def make_logs(folder, seconds):
     write_blocks(logs["gazetrace CSV, three rows a time"][0], CSV_HEAD, mean, seconds,
                  lambda t, tail: f"{t}000000{tail[0]}{t}000000{tail[1]}{t}000000{tail[2]}")
 
-    logs["TSV with a column map"] = (folder / "hour.tsv", ["--gaze-columns", str(folder / "map.json"), "--screen-px", "1920,1080"])
+    logs["TSV with a column map"] = (folder / "hour.tsv", ["--columns", str(folder / "map.json"), "--screen-px", "1920,1080"])
     (folder / "map.json").write_text(json.dumps({
         "time": "clock", "time_unit": "ms", "position_unit": "px",
         "left": {"x": "left x", "y": "left y", "pupil": "pupil"}, "right": {"x": "right x", "y": "right y", "pupil": "pupil"}}))

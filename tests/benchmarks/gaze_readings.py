@@ -20,16 +20,16 @@ WIDTH, HEIGHT = 1920, 1080
 ROWS = 3000
 # What a place in fractions is in each unit and origin, and the options that state it.
 PLACES = {
-    "fraction": (lambda u, v: (u, v), ["--gaze-unit", "fraction"]),
-    "fraction from the bottom left": (lambda u, v: (u, 1 - v), ["--gaze-unit", "fraction", "--gaze-origin", "bottom-left"]),
-    "px": (lambda u, v: (u * WIDTH, v * HEIGHT), ["--gaze-unit", "px"]),
-    "px from the bottom left": (lambda u, v: (u * WIDTH, (1 - v) * HEIGHT), ["--gaze-unit", "px", "--gaze-origin", "bottom-left"]),
-    "px from the center": (lambda u, v: ((u - .5) * WIDTH, (.5 - v) * HEIGHT), ["--gaze-unit", "px", "--gaze-origin", "center"]),
-    "norm": (lambda u, v: (2 * u - 1, 1 - 2 * v), ["--gaze-unit", "norm"]),
-    "height": (lambda u, v: ((u - .5) * WIDTH / HEIGHT, .5 - v), ["--gaze-unit", "height"]),
-    "cm from the center": (lambda u, v: ((u - .5) * 51, (.5 - v) * 29), ["--gaze-unit", "cm", "--gaze-origin", "center"]),
-    "deg": (lambda u, v: ((u - .5) * 45, (.5 - v) * 25), ["--gaze-unit", "deg"]),
-    "rad": (lambda u, v: ((u - .5) * .785, (.5 - v) * .436), ["--gaze-unit", "rad"]),
+    "fraction": (lambda u, v: (u, v), ["--unit", "fraction"]),
+    "fraction from the bottom left": (lambda u, v: (u, 1 - v), ["--unit", "fraction", "--origin", "bottom-left"]),
+    "px": (lambda u, v: (u * WIDTH, v * HEIGHT), ["--unit", "px"]),
+    "px from the bottom left": (lambda u, v: (u * WIDTH, (1 - v) * HEIGHT), ["--unit", "px", "--origin", "bottom-left"]),
+    "px from the center": (lambda u, v: ((u - .5) * WIDTH, (.5 - v) * HEIGHT), ["--unit", "px", "--origin", "center"]),
+    "norm": (lambda u, v: (2 * u - 1, 1 - 2 * v), ["--unit", "norm"]),
+    "height": (lambda u, v: ((u - .5) * WIDTH / HEIGHT, .5 - v), ["--unit", "height"]),
+    "cm from the center": (lambda u, v: ((u - .5) * 51, (.5 - v) * 29), ["--unit", "cm", "--origin", "center"]),
+    "deg": (lambda u, v: ((u - .5) * 45, (.5 - v) * 25), ["--unit", "deg"]),
+    "rad": (lambda u, v: ((u - .5) * .785, (.5 - v) * .436), ["--unit", "rad"]),
 }
 AXES = {"gl": lambda x, y, z: (x, y, z), "unity": lambda x, y, z: (x, y, -z), "sranipal": lambda x, y, z: (-x, y, -z),
         "cv": lambda x, y, z: (x, -y, -z)}
@@ -62,8 +62,8 @@ class Readings:
 
     def judge(self, name, true, said, options, is_alike):
         """Refused, named, right, or silent and wrong."""
-        result = self.run("gaze", "events", self.folder / "table.csv", *SCREEN, *options, "-o", self.folder / "events.tsv")
-        (self.folder / "events.tsv").unlink(missing_ok=True)
+        command = ["import", "-o", self.folder / "read.csv"] if options else ["events", "-o", self.folder / "events.tsv"]
+        result = self.run("gaze", *command, self.folder / "table.csv", *SCREEN, *options, "--overwrite")
         doubts = [line for line in result.stderr.splitlines() if "table.csv" in line and "guessed from its steps" not in line]
         what = "refused" if result.returncode else "right" if true == said else "named" if doubts else "alike" if is_alike else "silent"
         self.counts[what] = self.counts.get(what, 0) + 1
@@ -90,7 +90,7 @@ class Readings:
                 self.table("t[ns],dir_x,dir_y,dir_z", [(t, *turn(x, y, z)) for t, x, y, z in rows])
                 self.judge(name, true, "gl" if true == "gl" else "", [], False)
                 for said in AXES:
-                    self.judge(name, true, said, ["--gaze-axes", said], any(true in pair and said in pair for pair in ALIKE))
+                    self.judge(name, true, said, ["--axes", said], any(true in pair and said in pair for pair in ALIKE))
 
 
 def main():

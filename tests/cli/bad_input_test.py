@@ -117,7 +117,7 @@ class BadGaze(harness.CliTest):
 
     def test_unordered_stamps(self):
         rows = ["0,0.5,0.5,ok,left", "20,0.5,0.5,ok,left", "10,0.5,0.5,ok,left"]
-        self.refuse(harness.gaze_csv(rows), ["log.csv:8", "--gaze-order sort"])
+        self.refuse(harness.gaze_csv(rows), ["log.csv:8", "--order sort"])
 
     def test_duplicated_stamps(self):
         rows = ["0,0.5,0.5,ok,left", "10,0.5,0.5,ok,left", "10,0.6,0.5,ok,left"]
@@ -129,7 +129,20 @@ class BadGaze(harness.CliTest):
 
     def test_unknown_column(self):
         self.refuse("when,where_x,where_y\n0,0.5,0.5\n1,0.5,0.5\n", ["log.csv", "time"])
-        self.refuse("t[ns],u[1],v[1]\n0,0.5,0.5\n", ["log.csv", "uu"], more=["--gaze-x-column", "uu"])
+        self.write("named.csv", "t[ns],u[1],v[1]\n0,0.5,0.5\n")
+        self.assert_refused(["gaze", "import", "named.csv", "-o", "no.csv", "--x-column", "uu"], ["named.csv", "uu"])
+
+    def test_options_of_reading_are_the_importers(self):
+        """How a file is read is said once: nothing else takes it, and says who does."""
+        self.write("log.csv", "clock,x[px],y[px]\n0,5,5\n4,5,5\n")
+        import_it = "gazetrace gaze import log.csv -o gaze.csv"
+        for command in (["render", "box.gltf", *OUT, "--gaze"], ["gaze", "events"]):
+            self.assert_refused([*command, "log.csv", "--screen-px", "64,36"], ["--time-column", "which " + import_it + " takes"])
+            self.assert_refused([*command, "log.csv", "--time-column", "clock"], ["--time-column", "an option of 'gazetrace gaze import'"])
+            self.assert_refused([*command, "log.csv", "--gaze-unit", "px"], ["gazetrace gaze import LOG -o gaze.csv --unit UNIT"])
+        self.write("job.toml", 'gaze = "log.csv"\ngaze-zero-missing = true\n')
+        self.assert_refused(["plan", "--config", "job.toml"], ["gaze-zero-missing", "gaze import LOG -o gaze.csv --missing-value 0"])
+        self.assert_refused(["plan", "--gaze", "log.csv", "--gaze-eye", "dominant"], ["give left or right"])
 
     def test_screen_log_without_geometry(self):
         rows = "t[ns],u[1],v[1],valid,eye\n0,0.5,0.5,ok,left\n10,0.5,0.5,ok,left\n"

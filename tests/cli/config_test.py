@@ -34,7 +34,7 @@ class RoundTrip(harness.CliTest):
             "--gaze-at", "-0.1,1.5", "--gaze-max-age", "1500us", "--gaze-offset", "-3ns", "--gaze-start", "12345678901234567ns",
             "--screen-px", "3840,2160", "--screen-cm", "70.848,39.852", "--size", "640x360", "--fps", "24000/1001",
             "--frames", "1-100x2,301", "--region-samples", "4,2,1", "--region-eccentricities", "2.6,8.5", "--exposure", "auto-0.5", "--seed", "18446744073709551615", "--overwrite", "--aov", "albedo,depth",
-            "--gaze-valid-values", "1,yes", "--frame-rect", "0,0,64,36", "--only-pixel", "3,4", "--russian-roulette",
+            "--frame-rect", "0,0,64,36", "--only-pixel", "3,4", "--russian-roulette",
             "--clamp-indirect", "2.5")
         for line in ['eye = [-9, 2, 0]', 'gaze-max-age = "1500us"', 'gaze-start = "12345678901234567ns"',
                      'seed = "18446744073709551615"', 'aov = ["albedo", "depth"]', 'overwrite = true', 'exposure = "auto-0.5"',

@@ -23,7 +23,7 @@ class DamagedFiles(harness.CliTest):
 
     def test_stamps_over_the_whole_range_are_refused(self):
         self.write("ages.csv", "t[ns],u[1],v[1]\n-9223372036854775808,0.5,0.5\n0,0.5,0.5\n9223372036854775807,0.5,0.5\n")
-        self.assert_refused(["gaze", "inspect", "ages.csv"], ["more than a hundred years", "--gaze-time-unit"])
+        self.assert_refused(["gaze", "inspect", "ages.csv"], ["more than a hundred years", "--time-unit"])
         self.assert_refused(["gaze", "import", "ages.csv", "-o", "no.csv"], ["more than a hundred years"])
 
     def test_a_file_cut_in_the_middle_of_a_row_is_said_to_be(self):
@@ -92,7 +92,7 @@ class DamagedFiles(harness.CliTest):
         def grouped(value):
             return f"{value:,}"
 
-        more = ["--gaze-time-unit", "ms", "--screen-px", "1920,1080"]
+        more = ["--time-unit", "ms", "--screen-px", "1920,1080"]
         self.write("tabs.tsv", "time\tx\ty\n" + rows("\t", grouped))
         self.assert_refused(["gaze", "import", "tabs.tsv", "-o", "no.csv", *more], ["thousands separators", "column 'time'", "'1,000'"])
         self.write("quotes.csv", "time,x,y\n" + rows(",", lambda v: f'"{v:,}"'))
@@ -128,7 +128,7 @@ class DamagedFiles(harness.CliTest):
     def test_times_of_day_are_called_so(self):
         for first in ("12:30:05.250", "2026-05-01T12:30:05.250Z"):
             self.write("day.csv", "timestamp,x,y\n" + "".join(f"{first.replace('.250', f'.{i:03d}')},500,400\n" for i in range(20)))
-            self.assert_refused(["gaze", "inspect", "day.csv"], ["is a time of day", "write times as numbers", "--gaze-time-column"])
+            self.assert_refused(["gaze", "inspect", "day.csv"], ["is a time of day", "write times as numbers", "--time-column"])
 
     def test_a_line_without_an_end_is_not_held_whole(self):
         with open(self.folder / "line.csv", "wb") as file:

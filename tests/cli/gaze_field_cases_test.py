@@ -101,7 +101,7 @@ class FieldCases(harness.CliTest):
 
     def e08_samples_only(self):
         "EyeLink samples without their header: asks for --screen-px; then 1520 rows"
-        asks, got = self.refused("e08_samples_only.asc", ["edf2asc", "--screen-px"], ["--gaze-x-column"])
+        asks, got = self.refused("e08_samples_only.asc", ["edf2asc", "--screen-px"], ["--x-column"])
         reads, then = self.read("e08_samples_only.asc", PLACES, 0.01, ["--screen-px", "1920,1080"], 1520)
         return asks and reads, f"{got} | {then}"
 
@@ -111,7 +111,7 @@ class FieldCases(harness.CliTest):
 
     def e10_below_the_screen(self):
         "the eye rests below the screen; x and y are not exchanged"
-        return self.doubted("e10_below_the_screen.asc", ["below"], ["--gaze-swap-xy"])
+        return self.doubted("e10_below_the_screen.asc", ["below"], ["--swap-xy"])
 
     def e11_resolution_changes(self):
         "each block by its own GAZE_COORDS, or refused"
@@ -147,7 +147,7 @@ class FieldCases(harness.CliTest):
 
     def h04b_one_decimal(self):
         "unit vectors of one decimal; zeros are straight ahead"
-        return self.doubted("h04b_one_decimal.csv", ["coarse", "unit-vector"], ["--gaze-zero-missing", "--gaze-unit deg"])
+        return self.doubted("h04b_one_decimal.csv", ["coarse", "unit-vector"], ["--missing-value 0", "--unit deg"])
 
     def h06_radians(self):
         "radians are a unit of angles"
@@ -155,7 +155,7 @@ class FieldCases(harness.CliTest):
 
     def h08_openxr_world_quaternions(self):
         "gaze stands in the space of the head's poses"
-        good, got = self.says(self.inspect("h08_openxr_world_quaternions.csv"), ["world"], ["--gaze-flip-x"])
+        good, got = self.says(self.inspect("h08_openxr_world_quaternions.csv"), ["world"], ["--flip-x"])
         reads, then = self.read("h08_openxr_world_quaternions.csv", ANGLES, 0.5)
         return good and reads, f"{then} | {got}"
 
@@ -168,48 +168,48 @@ class FieldCases(harness.CliTest):
 
     def h09_unit_vectors_gaze_xyz(self):
         "unit vectors with +z ahead, no degrees"
-        good, got = self.doubted("h09_unit_vectors_gaze_xyz.csv", ["unit-vector", "--gaze-axes unity"], ["--gaze-unit deg"])
-        reads, then = self.read("h09_unit_vectors_gaze_xyz.csv", ANGLES, 0.5, ["--gaze-axes", "unity"])
+        good, got = self.doubted("h09_unit_vectors_gaze_xyz.csv", ["unit-vector", "--axes unity"], ["--unit deg"])
+        reads, then = self.read("h09_unit_vectors_gaze_xyz.csv", ANGLES, 0.5, ["--axes", "unity"])
         return good and reads, f"{got} | {then}"
 
     def h10_unity_dir_xyz(self):
-        "all directions point backwards: --gaze-axes unity"
-        good, got = self.doubted("h10_unity_dir_xyz.csv", ["--gaze-axes unity"])
-        refused, _ = self.refused("h10_unity_dir_xyz.csv", ["--gaze-axes unity"])
+        "all directions point backwards: --axes unity"
+        good, got = self.doubted("h10_unity_dir_xyz.csv", ["--axes unity"])
+        refused, _ = self.refused("h10_unity_dir_xyz.csv", ["--axes unity"])
         return good and refused, got
 
     def p03_ego4d_gaze(self):
         "the named time column counts; a scene camera's picture from the bottom left"
-        return self.says(self.inspect("p03_ego4d_gaze.csv", "--gaze-time-column", "canonical_timestamp_s"),
+        return self.says(self.inspect("p03_ego4d_gaze.csv", "--time-column", "canonical_timestamp_s"),
                          ["scene camera", "bottom-left"], ["there is no column"])
 
     def t01_clock_starts_anew(self):
         "the clock starts again in line 226; never --gaze-sort"
-        columns = ["--gaze-x-column", "norm_x", "--gaze-y-column", "norm_y", "--gaze-unit", "fraction"]
-        good, got = self.doubted("t01_clock_starts_anew.csv", ["226"], ["--gaze-sort", "--gaze-order sort"], columns)
-        plan, said = self.says(self.plan("t01_clock_starts_anew.csv", *columns), ["226"], ["--gaze-sort", "--gaze-order sort"])
+        columns = ["--x-column", "norm_x", "--y-column", "norm_y", "--unit", "fraction"]
+        good, got = self.doubted("t01_clock_starts_anew.csv", ["226"], ["--gaze-sort", "--order sort"], columns)
+        plan, said = self.refused("t01_clock_starts_anew.csv", ["226"], ["--gaze-sort", "--order sort"], columns)
         return good and plan, f"{got} | {said}"
 
     def t01b_clock_starts_anew_pupil_core(self):
         "the same of Pupil Core"
-        return self.refused("t01b_clock_starts_anew_pupil_core.csv", ["226"], ["--gaze-sort", "--gaze-order sort"],
-                            ["--gaze-frame", "scene-camera"])
+        return self.refused("t01b_clock_starts_anew_pupil_core.csv", ["226"], ["--gaze-sort", "--order sort"],
+                            ["--frame", "scene-camera"])
 
     def t02_2khz_whole_ms(self):
         "1840 samples at 2000 Hz, the second of a pair half a millisecond later"
-        good, got = self.doubted("t02_2khz_whole_ms.tsv", ["--gaze-order pairs"], ["--gaze-sort", "--gaze-order sort"])
-        log = self.import_log("t02_2khz_whole_ms.tsv", "--gaze-order", "pairs", "--gaze-unit", "px", "--screen-px", "1920,1080",
-                              "--gaze-time-unit", "ms")
+        good, got = self.doubted("t02_2khz_whole_ms.tsv", ["--order pairs"], ["--gaze-sort", "--order sort"])
+        log = self.import_log("t02_2khz_whole_ms.tsv", "--order", "pairs", "--unit", "px", "--screen-px", "1920,1080",
+                              "--time-unit", "ms")
         times = [int(row["t[ns]"]) for row in log.rows]
         return good and len(times) == 1840 and times[1] - times[0] == 500_000, f"{len(times)} rows | {got}"
 
     def t06_pygaze_message_in_line(self):
         "line 403 is broken; line 203 is a row of an event"
-        return self.refused("t06_pygaze_message_in_line.tsv", [":403:"], [":203:"], ["--gaze-unit", "fraction"])
+        return self.refused("t06_pygaze_message_in_line.tsv", [":403:"], [":203:"], ["--unit", "fraction"])
 
     def t06b_pygaze_event_rows(self):
         "rows of time and text are messages: 912 samples"
-        return self.read("t06b_pygaze_event_rows.tsv", PLACES, 0.02, ["--gaze-unit", "fraction"], 912)
+        return self.read("t06b_pygaze_event_rows.tsv", PLACES, 0.02, ["--unit", "fraction"], 912)
 
     def t07_pygaze_sum_of_eyes(self):
         "GazePointX is the sum of both eyes' columns"
@@ -227,21 +227,21 @@ class FieldCases(harness.CliTest):
         return bool(log.rows) and "# display_px 1920 1080" in log.head and close(log.place(), (.1998, .3002), 0.002), log.text[-150:]
 
     def t12_iohub_pix(self):
-        "centre origin, y up: a suspicion with --gaze-origin center"
-        good, got = self.doubted("t12_iohub_pix.txt", ["--gaze-origin center"])
-        reads, then = self.read("t12_iohub_pix.txt", PLACES, 0.02, ["--gaze-unit", "px", "--gaze-origin", "center", "--screen-px", "1920,1080"])
+        "centre origin, y up: a suspicion with --origin center"
+        good, got = self.doubted("t12_iohub_pix.txt", ["--origin center"])
+        reads, then = self.read("t12_iohub_pix.txt", PLACES, 0.02, ["--unit", "px", "--origin", "center", "--screen-px", "1920,1080"])
         return good and reads, f"{then} | {got}"
 
     def t13_height_units(self):
         "PsychoPy height: never degrees by guess; at 0.125 s (0.20, 0.30)"
-        asks, got = self.refused("t13_height_units.csv", ["--gaze-unit height"])
-        reads, then = self.read("t13_height_units.csv", PLACES, 0.01, ["--gaze-unit", "height", "--screen-px", "1920,1080"])
+        asks, got = self.refused("t13_height_units.csv", ["--unit height"])
+        reads, then = self.read("t13_height_units.csv", PLACES, 0.01, ["--unit", "height", "--screen-px", "1920,1080"])
         return asks and reads, f"{then} | {got}"
 
     def t13b_norm_units(self):
         "PsychoPy norm: never degrees by guess; at 0.125 s (0.20, 0.30)"
-        asks, got = self.refused("t13b_norm_units.csv", ["--gaze-unit norm"])
-        reads, then = self.read("t13b_norm_units.csv", PLACES, 0.01, ["--gaze-unit", "norm"])
+        asks, got = self.refused("t13b_norm_units.csv", ["--unit norm"])
+        reads, then = self.read("t13b_norm_units.csv", PLACES, 0.01, ["--unit", "norm"])
         return asks and reads, f"{then} | {got}"
 
     def t14_imotions(self):
@@ -252,17 +252,17 @@ class FieldCases(harness.CliTest):
         return len(times) == 266 and 0 < len(lost) < 30 and log.near(PLACES, 0.02) > 0.7, f"{len(times)} times, {len(lost)} lost " + log.text[-150:]
 
     def t18_centred_pixels(self):
-        "83 % beside the display: --gaze-origin center"
-        good, got = self.doubted("t18_centred_pixels.csv", ["--gaze-origin center"])
-        refused, _ = self.refused("t18_centred_pixels.csv", ["--gaze-origin center"], (), ["--screen-px", "1280,1024"])
-        reads, then = self.read("t18_centred_pixels.csv", PLACES, 0.01, ["--screen-px", "1280,1024", "--gaze-origin", "center"])
+        "83 % beside the display: --origin center"
+        good, got = self.doubted("t18_centred_pixels.csv", ["--origin center"])
+        refused, _ = self.refused("t18_centred_pixels.csv", ["--origin center"], (), ["--screen-px", "1280,1024"])
+        reads, then = self.read("t18_centred_pixels.csv", PLACES, 0.01, ["--screen-px", "1280,1024", "--origin", "center"])
         return good and refused and reads, f"{then} | {got}"
 
     def t26_validity_zero_is_good(self):
-        "0 is good: --gaze-valid-values 0"
+        "0 is good: --valid-values 0"
         options = ["--screen-px", "1920,1080"]
-        good, got = self.doubted("t26_validity_zero_is_good.tsv", ["--gaze-valid-values 0"], ["--gaze-zero-missing"], options)
-        refused, _ = self.refused("t26_validity_zero_is_good.tsv", ["--gaze-valid-values 0"], (), options)
+        good, got = self.doubted("t26_validity_zero_is_good.tsv", ["--valid-values 0"], ["--missing-value 0"], options)
+        refused, _ = self.refused("t26_validity_zero_is_good.tsv", ["--valid-values 0"], (), options)
         return good and refused, got
 
     def x01_pupil_capture_lsl_relay(self):

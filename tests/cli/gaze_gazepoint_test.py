@@ -47,7 +47,8 @@ class Gazepoint(harness.CliTest):
         self.assertEqual([(int(row["onset_ns"]), float(row["duration_ms"])) for row in found],
                          [(round(begin * 1e9), duration * 1e3) for begin, duration, _, _ in FIXATIONS])
         # Counted by the computer's ticks, a hundred seconds later.
-        ticks = self.events("all.csv", "--gaze-time-column", "TIMETICK")
+        self.run_ok("gaze", "import", "all.csv", "--time-column", "TIMETICK", "-o", "ticks.csv")
+        ticks = self.events("ticks.csv")
         for row, (begin, duration, _, _) in zip(ticks, FIXATIONS, strict=True):
             self.assertAlmostEqual(int(row["onset_ns"]) * 1e-9, 100 + begin, delta=1e-4)
             self.assertEqual(float(row["duration_ms"]), duration * 1e3)

@@ -51,7 +51,7 @@ class Words(harness.CliTest):
         self.assertIn("8.00 s, from 5.000 s to 12.996 s of the clock", lines["time"])
         self.assertIn("(5000000000 ns to 12996000000 ns)", lines["time"])
         # What a share is of, and what to do where it is not believed.
-        self.assertRegex(lines["format"], r"\(known by the content of the file, with \d+ % certainty; --gaze-format names another\)")
+        self.assertRegex(lines["format"], r"\(known by the content of the file, with \d+ % certainty; --format names another\)")
         self.assertNotIn("sure", text)
         self.assertIn("(RMS-S2S)", lines["precision"])
         self.assertIn("standard deviation", lines["precision"])
@@ -139,7 +139,7 @@ class Doctor(harness.CliTest):
                     cells[at] = f"{1050 - float(cells[at]):.1f}"
 
         broken = breaking.cells_changed(self.sample(name), breaking.begins_with_digit, "\t", flip)
-        self.assert_mended(name, broken, "y-flip", "--gaze-flip-y", kinds=["fault"])
+        self.assert_mended(name, broken, "y-flip", "--flip-y", kinds=["fault"])
 
     def test_y_flipped_tobii_studio(self):
         name = "tobii-studio-tsv/data.tsv"
@@ -153,7 +153,7 @@ class Doctor(harness.CliTest):
                     cells[at] = str(1080 - float(cells[at]))
 
         broken = breaking.cells_changed(self.sample(name), lambda line: "RecordingTimestamp" not in line and "\t" in line, "\t", flip)
-        self.assert_mended(name, broken, "y-flip", "--gaze-flip-y", kinds=["fault"])
+        self.assert_mended(name, broken, "y-flip", "--flip-y", kinds=["fault"])
 
     def test_y_flipped_pupil_cloud(self):
         name = "pupil-invisible-cloud/gaze.csv"
@@ -162,7 +162,7 @@ class Doctor(harness.CliTest):
             cells[4] = repr(1080 - float(cells[4]))
 
         broken = breaking.cells_changed(self.sample(name), lambda line: line.count(",") > 5 and "section" not in line, ",", flip)
-        self.assert_mended(name, broken, "y-flip", "--gaze-flip-y", common=["--gaze-frame", "scene-camera"], kinds=["fault"])
+        self.assert_mended(name, broken, "y-flip", "--flip-y", common=["--frame", "scene-camera"], kinds=["fault"])
 
     def test_y_flipped_without_a_second_account_is_undecided(self):
         text = self.sample("plain-csv/gaze-toy-example.csv")
@@ -202,7 +202,7 @@ class Doctor(harness.CliTest):
                 cells[x], cells[y] = cells[y], cells[x]
 
         broken = breaking.cells_changed(self.sample(name), lambda line: "RecordingTimestamp" not in line and "\t" in line, "\t", swap)
-        self.assert_mended(name, broken, "swapped-axes", "--gaze-swap-xy", kinds=["fault"])
+        self.assert_mended(name, broken, "swapped-axes", "--swap-xy", kinds=["fault"])
 
     # -- wrong units
 
@@ -217,7 +217,7 @@ class Doctor(harness.CliTest):
                 cells[0] = f"{int(cells[0]) // 1000}.{int(cells[0]) % 1000:03}"
 
             broken = breaking.cells_changed(self.sample(name), row, separator, to_ms)
-            self.assert_mended(name, broken, "time-unit", "--gaze-time-unit ms")
+            self.assert_mended(name, broken, "time-unit", "--time-unit ms")
 
     def test_microseconds_read_as_milliseconds(self):
         name = "eyelink-asc/mono500.asc"
@@ -226,12 +226,12 @@ class Doctor(harness.CliTest):
             for line in self.sample(name).split("\n"))
         self.write("broken.asc", text)
         report = self.inspect("broken.asc")
-        self.assertEqual([(f["code"], f["flag"]) for f in self.accused(report)], [("time-unit", "--gaze-time-unit us")])
+        self.assertEqual([(f["code"], f["flag"]) for f in self.accused(report)], [("time-unit", "--time-unit us")])
 
     def test_a_header_with_the_wrong_unit_of_time(self):
         text = self.sample("plain-csv/gaze-toy-example.csv")
-        self.assert_mended("toy.csv", text.replace("time,", "time[us],", 1), "time-unit", "--gaze-time-unit ms",
-                           text.replace("time,", "time[ms],", 1), ["--screen-px", "1280,1024", "--gaze-unit", "px"])
+        self.assert_mended("toy.csv", text.replace("time,", "time[us],", 1), "time-unit", "--time-unit ms",
+                           text.replace("time,", "time[ms],", 1), ["--screen-px", "1280,1024", "--unit", "px"])
 
     def test_degrees_declared_as_pixels(self):
         def arff(cells):
@@ -240,7 +240,7 @@ class Doctor(harness.CliTest):
                 cells[2] = repr(-breaking.degrees(float(cells[2]), 720, 22.5, 45))
 
         broken = breaking.cells_changed(self.sample("arff/gaze.arff"), breaking.begins_with_digit, ",", arff)
-        self.assert_mended("arff/gaze.arff", broken, "position-unit", "--gaze-unit deg", within=1e-12)
+        self.assert_mended("arff/gaze.arff", broken, "position-unit", "--unit deg", within=1e-12)
 
         name = "smi-iview-txt/recording1_Samples.txt"
         text = self.sample(name)
@@ -254,7 +254,7 @@ class Doctor(harness.CliTest):
                 cells[y] = repr(-breaking.degrees(float(cells[y]), 768, 20, 80))
 
         self.assert_mended(name, breaking.cells_changed(text, breaking.begins_with_digit, "\t", smi), "position-unit",
-                           "--gaze-unit deg", within=1e-9)
+                           "--unit deg", within=1e-9)
 
     # -- missing values as zeros
 
@@ -269,13 +269,13 @@ class Doctor(harness.CliTest):
         whole = "\n".join(line for line in self.sample(name).split("\n")
                           if line.split(" ")[0].split("\t")[0] not in ("SBLINK", "EBLINK", "SSACC", "ESACC", "SFIX", "EFIX"))
         broken = breaking.cells_changed(whole, breaking.begins_with_digit, "\t", zeros)
-        self.assert_mended(name, broken, "zero-missing", "--gaze-zero-missing", whole)
+        self.assert_mended(name, broken, "zero-missing", "--missing-value 0", whole)
 
         lines = self.sample("plain-csv/gaze-toy-example.csv").split("\n")
         lost = [i for i in range(1, len(lines) - 1) if i % 400 < 30]
         broken = [line.split(",")[0] + ",0.0,0.0" if i in lost else line for i, line in enumerate(lines)]
         whole = [line.split(",")[0] + ",," if i in lost else line for i, line in enumerate(lines)]
-        self.assert_mended("toy.csv", "\n".join(broken), "zero-missing", "--gaze-zero-missing", "\n".join(whole),
+        self.assert_mended("toy.csv", "\n".join(broken), "zero-missing", "--missing-value 0", "\n".join(whole),
                            ["--screen-px", "1280,1024"])
 
     def test_other_numbers_for_missing(self):
@@ -287,7 +287,7 @@ class Doctor(harness.CliTest):
         def broken(mark):
             return "\n".join(f"{line.split(',')[0]},{mark},{mark}" if i in lost else line for i, line in enumerate(lines))
 
-        self.assert_mended("toy.csv", broken(-1), "missing-value", "--gaze-missing-value -1", whole, common)
+        self.assert_mended("toy.csv", broken(-1), "missing-value", "--missing-value -1", whole, common)
         for mark in ("-32768", "1e8"):
             self.write("marks.csv", broken(mark))
             self.write("whole.csv", whole)
@@ -303,7 +303,7 @@ class Doctor(harness.CliTest):
             ("plain-csv/gaze-toy-example.csv", breaking.begins_with_digit, ["--screen-px", "1280,1024"]),
             ("pico-neo3-pro/boxing_VR.csv", lambda line: line.startswith("SE"), []),
         ):
-            self.assert_mended(name, breaking.shuffled(self.sample(name), row), "unordered", "--gaze-order sort", common=common, kinds=["fault"])
+            self.assert_mended(name, breaking.shuffled(self.sample(name), row), "unordered", "--order sort", common=common, kinds=["fault"])
 
     def test_repeated_block(self):
         for name, row, common in (
@@ -314,7 +314,7 @@ class Doctor(harness.CliTest):
             ("pico-neo3-pro/boxing_VR.csv", lambda line: line.startswith("SE"), []),
         ):
             broken = breaking.repeated(self.sample(name), row)
-            self.assert_mended(name, broken, "repeated-rows", "--gaze-order sort", common=common, kinds=["fault"])
+            self.assert_mended(name, broken, "repeated-rows", "--order sort", common=common, kinds=["fault"])
 
     def test_a_clock_that_starts_again_is_not_to_be_sorted(self):
         rows = "".join(f"{t},{0.2 + 0.0001 * t + 0.1 * part},0.5\n" for part in (0, 1) for t in range(part, 4000, 2))
@@ -328,7 +328,7 @@ class Doctor(harness.CliTest):
     def test_decimal_commas_between_commas(self):
         for name, common in (("plain-csv/gaze-toy-example.csv", ["--screen-px", "1280,1024"]), ("arff/gaze.arff", [])):
             broken = breaking.decimal_commas(self.sample(name), breaking.begins_with_digit)
-            self.assert_mended(name, broken, "decimal-commas", "--gaze-decimal-comma", common=common, kinds=["fault"])
+            self.assert_mended(name, broken, "decimal-commas", "--decimal-comma", common=common, kinds=["fault"])
 
     def test_decimal_commas_between_other_separators_need_no_option(self):
         for name in ("vive-pro-eye/TESTNA01_360VR_Fist3.csv", "eyelink-asc/mono500.asc", "smi-iview-txt/recording1_Samples.txt"):

@@ -68,7 +68,7 @@ class Recordings(harness.CliTest):
 
     def test_several_recordings_are_counted_and_one_is_chosen(self):
         for name, text, count, rows, more in (
-                ("cloud.csv", cloud(), 3, 500, ["--gaze-frame", "head"]), ("surface.csv", surface(), 2, 300, []),
+                ("cloud.csv", cloud(), 3, 500, ["--frame", "head"]), ("surface.csv", surface(), 2, 300, []),
                 ("lab.tsv", pro_lab(), 3, 200, [])):
             self.write(name, text)
             report = self.inspect(name, *more)
@@ -106,7 +106,7 @@ class Recordings(harness.CliTest):
 
     def test_a_table_of_ones_own_names_the_column(self):
         rows = "".join(f"{who},{4 * i},{x},0.5\n" for who, x in (("a", 0.25), ("b", 0.75)) for i in range(100))
-        for header, option in (("participant", []), ("who", ["--gaze-recording-column", "who"])):
+        for header, option in (("participant", []), ("who", ["--recording-column", "who"])):
             self.write("own.csv", f"{header},time[ms],u,v\n" + rows)
             self.assertEqual(len(self.inspect("own.csv", *option)["recordings"]), 2)
             table = self.converted("own.csv", *option, "--gaze-recording", "b")

@@ -95,7 +95,8 @@ class GazeReport(reports.ReportTest):
         self.assertIn("scanpath.svg", self.files("two"))
         self.assertIn("blocks.asc, trial 2", (self.folder / "two.html").read_text())
         # Names of trials are texts of the recording, which are shown where they are asked for.
-        options = ["blocks.asc", "--trial-start", "TRIALID *", "-o", "named.html", "--overwrite"]
+        self.run_ok("gaze", "import", "blocks.asc", "--trial-start", "TRIALID *", "--keep-ids", "-o", "named.csv")
+        options = ["named.csv", "-o", "named.html", "--overwrite"]
         self.made(main, *options)
         self.assertNotIn("TRIALID", (self.folder / "named.html").read_text())
         self.made(main, *options, "--keep-ids")

@@ -52,9 +52,10 @@ class Study(harness.CliTest):
     def test_messages_split_and_align(self):
         self.write("blocks.asc", blocks(3))
         options = ["--trial-start", "TRIALID *", "--trial-end", "IMAGE_OFF"]
-        report = json.loads(self.run_ok("gaze", "trials", "blocks.asc", *options, "--keep-ids", "--json").stdout)
+        self.run_ok("gaze", "import", "blocks.asc", *options, "--keep-ids", "-o", "named.csv")
+        report = json.loads(self.run_ok("gaze", "trials", "named.csv", "--keep-ids", "--json").stdout)
         self.assertEqual([t["name"] for t in report["trials"]], ["TRIALID 1", "TRIALID 2", "TRIALID 3"])
-        events = table(self.run_ok("gaze", "events", "blocks.asc", *options, "--trial", "TRIALID 2").stdout)
+        events = table(self.run_ok("gaze", "events", "named.csv", "--trial", "TRIALID 2").stdout)
         self.assertGreaterEqual(min(int(e["onset_ns"]) for e in events), 6_000_000_000)
         self.assertLessEqual(max(int(e["offset_ns"]) for e in events), 7_000_000_000)
         frame = self.frames_of_plan("--fps", "10", "--frames", "1", "--trial", "2", "--gaze-anchor", "IMAGE_ON=0s")[0]
@@ -63,27 +64,33 @@ class Study(harness.CliTest):
         inspected = self.run_ok("gaze", "inspect", "blocks.asc", "--trial", "2", "--json").stdout
         self.assertEqual(json.loads(inspected)["samples"], 500)
         self.assert_refused(["gaze", "events", "blocks.asc", "--trial", "4"], ["there is no trial 4", "1 to 3"])
-        self.assert_refused(["gaze", "events", "blocks.asc", "--trial", "1", "--trial-start", "NO SUCH"],
+        # Who was recorded may stand in a message: without names the trials stay, and their numbers.
+        self.run_ok("gaze", "import", "blocks.asc", *options, "-o", "numbered.csv")
+        self.assertNotIn("TRIALID", (self.folder / "numbered.csv").read_text())
+        numbered = json.loads(self.run_ok("gaze", "trials", "numbered.csv", "--json").stdout)
+        self.assertEqual([t["begin_ns"] for t in numbered["trials"]], [t["begin_ns"] for t in report["trials"]])
+        self.assert_refused(["gaze", "import", "blocks.asc", "-o", "no.csv", "--trial-start", "NO SUCH"],
                             ["has no trial by messages", "3 blocks"])
-        self.assert_refused(["gaze", "events", "blocks.asc", "--trial-nth", "2"], ["--trial-nth"])
+        self.assert_refused(["gaze", "import", "blocks.asc", "-o", "no.csv", "--trial-nth", "2"], ["--trial-nth"])
 
     def test_a_table_of_ages_is_refused(self):
         self.write("blocks.asc", blocks(1))
         for rows in ("-9000000000000000000\t9000000000000000000\n", "-5000000000000000000\t2000000000\n", "0\t5000000000000000000\n"):
             self.write("ages.tsv", "onset_ns\toffset_ns\n" + rows)
-            self.assert_refused(["gaze", "trials", "blocks.asc", "--trial-table", "ages.tsv"], ["ages.tsv:2: the trial lasts more than a hundred years"])
+            self.assert_refused(["gaze", "import", "blocks.asc", "-o", "no.csv", "--trial-table", "ages.tsv"], ["ages.tsv:2: the trial lasts more than a hundred years"])
 
     def test_all_trials_of_a_recording_are_one_sweep(self):
         """By a grid over `trial`, or by a [[gaze]] for each; each row has the frames of its trial."""
         self.write("blocks.asc", blocks(2))
         self.write("trials.tsv", "onset\tduration\n1\t0.95\n6\t1.95\n")
+        self.run_ok("gaze", "import", "blocks.asc", "--trial-table", "trials.tsv", "-o", "gaze.csv")
         self.write("box.gltf", json.dumps(harness.box_gltf()))
         plan = ('[common]\nsize = "64x36"\nscreen-px = [64, 36]\nscreen-cm = [64, 36]\nscreen-distance-cm = 60\nfps = 4\n'
-                'gaze-transfer = "fraction"\ntrial-table = "trials.tsv"\n[[scene]]\nname = "box"\npath = "box.gltf"\n{}\n[reference]\nspp = 4\n'
+                'gaze-transfer = "fraction"\n[[scene]]\nname = "box"\npath = "box.gltf"\n{}\n[reference]\nspp = 4\n'
                 '[measure]\nrepeats = 2\ncontrols = false\nefficiency-spp = 0\nreference-rate = 8\nbaselines = ["none"]\nmetrics = ["mse"]\n')
         rates = 'region-samples = [[2, 2, 2]]\nregion-blocks = [[1, 1]]\n'
-        each = '[[gaze]]\nname = "{0}"\nlog = "blocks.asc"\ntrial = "{1}"\n'
-        for text in ('[[gaze]]\nname = "log"\nlog = "blocks.asc"\n[grid]\ntrial = ["1", "2"]\n' + rates,
+        each = '[[gaze]]\nname = "{0}"\nlog = "gaze.csv"\ntrial = "{1}"\n'
+        for text in ('[[gaze]]\nname = "log"\nlog = "gaze.csv"\n[grid]\ntrial = ["1", "2"]\n' + rates,
                      each.format("first", 1) + each.format("second", 2) + "[grid]\n" + rates):
             self.write("plan.toml", plan.format(text))
             rows = [line.split() for line in self.run_ok("sweep", "plan.toml", "--dry-run").stdout.splitlines() if " test " in line]

@@ -20,48 +20,49 @@ CORNERS = "section id,recording id,timestamp [ns],detected markers IDs,top left 
 
 class Tables(harness.CliTest):
     def test_tables_of_events_are_no_gaze(self):
-        named = ["--gaze-time-column", "start timestamp [ns]", "--gaze-x-column", "fixation x [px]", "--gaze-y-column", "fixation y [px]"]
-        for name, text, more in (("cloud.csv", CLOUD_FIXATIONS, named), ("core.csv", CORE_FIXATIONS, ["--gaze-time-column", "start_timestamp",
-                                  "--gaze-x-column", "norm_pos_x", "--gaze-y-column", "norm_pos_y", "--gaze-time-unit", "s"]),
+        named = ["--time-column", "start timestamp [ns]", "--x-column", "fixation x [px]", "--y-column", "fixation y [px]"]
+        for name, text, more in (("cloud.csv", CLOUD_FIXATIONS, named), ("core.csv", CORE_FIXATIONS, ["--time-column", "start_timestamp",
+                                  "--x-column", "norm_pos_x", "--y-column", "norm_pos_y", "--time-unit", "s"]),
                                  ("gazepoint.csv", GAZEPOINT_FIXATIONS, [])):
             self.write(name, text)
             for arguments in ([], more):
-                self.assert_refused(["gaze", "inspect", name, *SCREEN, *arguments], ["is a table of fixations", "--gaze-events"])
+                self.assert_refused(["gaze", "inspect", name, *SCREEN, *arguments], ["is a table of fixations", "--events"])
 
     def test_corners_of_a_surface_are_no_gaze(self):
         self.write("surface.csv", CORNERS)
         self.assert_refused(["gaze", "inspect", "surface.csv"], ["corners of a surface", "gaze_positions_on_surface"])
-        self.assert_refused(["gaze", "inspect", "surface.csv", "--gaze-time-column", "timestamp [ns]", "--gaze-x-column", "top left x [px]",
-                             "--gaze-y-column", "top left y [px]", *SCREEN], ["corners of a surface"])
+        self.assert_refused(["gaze", "inspect", "surface.csv", "--time-column", "timestamp [ns]", "--x-column", "top left x [px]",
+                             "--y-column", "top left y [px]", *SCREEN], ["corners of a surface"])
 
     def test_a_table_of_fixations_can_be_the_events_of_a_log(self):
         self.write("log.csv", harness.gaze_csv(f"{4_000_000 * i},{0.4 + 0.01 * (i // 100)},0.5,ok,cyclopean" for i in range(2000)))
         for name, text in (("cloud.csv", CLOUD_FIXATIONS), ("core.csv", CORE_FIXATIONS), ("gazepoint.csv", GAZEPOINT_FIXATIONS)):
             self.write(name, text)
-            rows = list(csv.DictReader(self.run_ok("gaze", "events", "log.csv", "--gaze-events", name, "--method", "log").stdout.splitlines(), delimiter="\t"))
+            self.run_ok("gaze", "import", "log.csv", "--events", name, "-o", "out.csv", "--overwrite")
+            rows = list(csv.DictReader(self.run_ok("gaze", "events", "out.csv", "--method", "log").stdout.splitlines(), delimiter="\t"))
             fixations = [row for row in rows if row["movement"] == "fixation"]
             self.assertEqual([(int(row["onset_ns"]), float(row["duration_ms"])) for row in fixations],
                              [(400_000_000 * i, 300) for i in range(20)], name)
         own = self.run_ok("gaze", "events", "log.csv", "-o", "own.tsv")
         self.assertIn("fixation", own.stdout)
         count = (self.folder / "own.tsv").read_text().count("fixation\t")
-        report = json.loads(self.run_ok("gaze", "inspect", "log.csv", "--gaze-events", "own.tsv", "--json").stdout)
+        report = json.loads(self.run_ok("gaze", "inspect", "log.csv", "--events", "own.tsv", "--json").stdout)
         self.assertEqual(report["events"]["fixation"], count)
         self.write("later.csv", CLOUD_FIXATIONS.replace("s,r,", "s,r,").replace(",300,", ",300,").replace("\ns,r,", "\ns,r,9"))
-        self.assert_refused(["gaze", "events", "log.csv", "--gaze-events", "log.csv"], ["no columns of begin"])
+        self.assert_refused(["gaze", "import", "log.csv", "-o", "no.csv", "--events", "log.csv"], ["no columns of begin"])
 
     def test_a_column_of_one_eye_is_that_eyes(self):
         rows = "".join(f"{4 * i},{0.4 + 0.001 * (i % 9):.3f},0.5\n" for i in range(100))
         for x, y, eye in (("LGazePos2dx", "LGazePos2dy", "left"), ("right_x", "right_y", "right"), ("gaze x", "gaze y", "cyclopean")):
             self.write("own.csv", f"time[ms],{x},{y}\n" + rows)
-            self.run_ok("gaze", "import", "own.csv", "-o", "out.csv", "--overwrite", "--gaze-x-column", x, "--gaze-y-column", y, "--gaze-unit", "fraction")
+            self.run_ok("gaze", "import", "own.csv", "-o", "out.csv", "--overwrite", "--x-column", x, "--y-column", y, "--unit", "fraction")
             lines = [line for line in (self.folder / "out.csv").read_text().splitlines() if line[:1] != "#"]
             self.assertEqual({row["eye"] for row in csv.DictReader(lines)}, {eye})
 
     def test_missing_columns_are_named_together(self):
         self.write("own.csv", "clock,a,b\n" + "".join(f"{i},1,2\n" for i in range(20)))
         line = self.assert_refused(["gaze", "inspect", "own.csv"], ["time", "horizontal position", "vertical position"])
-        for option in ("--gaze-time-column", "--gaze-x-column", "--gaze-y-column"):
+        for option in ("--time-column", "--x-column", "--y-column"):
             self.assertIn(option, line)
 
     def test_places_of_stated_fixations_need_no_screen(self):
@@ -83,15 +84,15 @@ class Tables(harness.CliTest):
         self.write("mark.csv", "time[ms],x[px],y[px]\n" + rows)
         more = ["--screen-px", "1920,1080"]
         report = json.loads(self.run_ok("gaze", "inspect", "mark.csv", *more, "--json").stdout)
-        self.assertEqual(report["flags"], ["--gaze-missing-value -1"])
-        mended = json.loads(self.run_ok("gaze", "inspect", "mark.csv", *more, "--gaze-missing-value", "-1", "--json").stdout)
+        self.assertEqual(report["flags"], ["--missing-value -1"])
+        mended = json.loads(self.run_ok("gaze", "inspect", "mark.csv", *more, "--missing-value", "-1", "--json").stdout)
         self.assertEqual((mended["usable"], mended["flags"]), (380, []))
         # Scattered, as at the tracker's edge, so that gaze jumps to the place again and again.
         rows = "".join(f"{4 * i},{-1 if i % 7 == 3 else 900 + i % 300},540\n" for i in range(1400))
         self.write("mark.csv", "time[ms],x[px],y[px]\n" + rows)
         report = json.loads(self.run_ok("gaze", "inspect", "mark.csv", *more, "--json").stdout)
-        self.assertEqual(report["flags"], ["--gaze-missing-value -1"])
-        mended = json.loads(self.run_ok("gaze", "inspect", "mark.csv", *more, "--gaze-missing-value", "-1", "--json").stdout)
+        self.assertEqual(report["flags"], ["--missing-value -1"])
+        mended = json.loads(self.run_ok("gaze", "inspect", "mark.csv", *more, "--missing-value", "-1", "--json").stdout)
         self.assertEqual((mended["usable"], mended["flags"]), (1200, []))
 
 

@@ -144,7 +144,8 @@ class SweepRows(harness.CliTest):
     def test_a_camera_on_the_head_has_a_reference_for_each_clock(self):
         self.write("log.csv", gaze_test.HEAD_LOG)
         self.write("map.json", json.dumps(gaze_test.HEAD_MAP))
-        head = 'log = "log.csv"\ngaze-columns = "map.json"\n'
+        self.run_ok("gaze", "import", "log.csv", "--columns", "map.json", "-o", "gaze.csv")
+        head = 'log = "gaze.csv"\n'
         plan = ('[common]\ncamera-from-gaze = true\nsize = "64x36"\nfps = 2\nframes = "1"\n[[scene]]\nname = "box"\n'
                 f'path = "box.gltf"\n[[gaze]]\nname = "a"\n{head}[[gaze]]\nname = "b"\n{head}SHIFT\n{GRID}'
                 '[measure]\nmetrics = ["mse"]\n')

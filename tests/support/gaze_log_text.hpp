@@ -143,10 +143,10 @@ class GazeLogText {
   void one(const Conventions& conventions) {
     const auto& [time_column, time_exponent, form, position_columns, unit, unit_scale, origin, corner, are_directions,
                  off_screen_is_told, lens, axes, x_is_turned, swap_xy, flip_x, flip_y, missing_value, zero_is_missing,
-                 display, geometry, unordered, eye, dominant_eye, eye_taken, warnings, doubts] = conventions;
+                 display, geometry, unordered, eye, eye_taken, warnings, doubts] = conventions;
     put(time_column, time_exponent, form, position_columns, unit, unit_scale, origin, corner, are_directions,
         off_screen_is_told, lens, axes, x_is_turned, swap_xy, flip_x, flip_y, missing_value, zero_is_missing, display,
-        geometry, unordered, eye, dominant_eye, eye_taken, warnings, doubts);
+        geometry, unordered, eye, eye_taken, warnings, doubts);
   }
   void one(const ReadingDoubt& doubt) {
     const auto& [code, what, evidence, setting, is_open, refuses] = doubt;

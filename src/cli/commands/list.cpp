@@ -86,15 +86,15 @@ std::vector<Family> families() {
          return members;
        }},
       {"filters", "--filter", [](const auto&) { return members_of(reconstruction_filters()); }},
-      {"gaze-formats", "--gaze-format",
+      {"gaze-formats", "gaze import --format",
        [](const auto&) {
          std::vector<Member> members;
          for (const GazeFormatInfo& format : gaze_formats()) {
            const bool real = format.proof == FormatProof::recording;
            members.push_back(
-               {format.name,
-                format.description + (real ? " (tried on a real recording)"
-                                           : " (unconfirmed: synthetic files only, made after its documentation)")});
+               {format.name, format.description +
+                                 (real ? " (tried on a real recording)"
+                                       : " (never tried on a real recording: on files made after its documentation)")});
          }
          return members;
        }},

@@ -257,7 +257,7 @@ OptionSchema<VideoArguments> video_schema() {
                "t_video = scale (t_log - start) + offset");
   schema.value("--frame-rect", shared(&JobSettings::frame_rect), "X,Y,W,H",
                "Where the frame lies on the screen, in screen pixels; default: as rendered, else it fills the screen");
-  schema.include(gaze_file_schema(), shared(&JobSettings::gaze));
+  schema.include(gaze_choice_schema(), shared(&JobSettings::gaze));
   schema.include(screen_schema(), shared(&JobSettings::screen));
   schema.group(kColor);
   schema.include(color_config_schema().with_headings([](const Option&) { return kColor; }),

@@ -47,7 +47,7 @@ class Axes {
         add(FindingKind::fault, "swapped-axes", "the axes are exchanged",
             fmt::format("gaze x goes with y of {} (r = {:.2f}), and y with its x (r = {:.2f}), {} values", w.what, w.xy,
                         w.yx, w.count),
-            "`gaze-swap-xy`");
+            "`swap-xy`");
         continue;
       }
       if (speaks_for_gaze('x')) {
@@ -65,7 +65,7 @@ class Axes {
         const bool by_vor = test.evidence.starts_with("vestibulo");
         add(by_vor ? FindingKind::suspicion : FindingKind::fault, fmt::format("{}-flip", test.axis),
             test.axis == 'x' ? "left and right are exchanged" : "top and bottom are exchanged", test.evidence,
-            fmt::format("`gaze-flip-{}`", test.axis));
+            fmt::format("`flip-{}`", test.axis));
       }
     }
     one_eye_told();
@@ -197,7 +197,7 @@ class Axes {
         add(FindingKind::fault, fmt::format("{}-flip", axis),
             fmt::format("{} of the {} eye are exchanged", axis == 'x' ? "left and right" : "top and bottom",
                         to_string(*told->eye)),
-            test.evidence, fmt::format("`gaze-flip-{}`", axis));
+            test.evidence, fmt::format("`flip-{}`", axis));
         add(FindingKind::suspicion, "one-eye-untested",
             fmt::format("which way {} of the {} eye runs could not be tested", axis, other), test.evidence,
             fmt::format("`gaze-eye` {}", to_string(*told->eye)));

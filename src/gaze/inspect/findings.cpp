@@ -132,7 +132,7 @@ class Doctor {
                                     : fmt::format("line {}: {}", order.first_duplicate_row, duplicate_problem(order));
     const std::string seen = fmt::format("{} of {} rows go back in time, {} stand at a time that is there already",
                                          order.backward_steps, order.rows, order.duplicates);
-    const std::string setting = loses_much(order) ? "" : "`gaze-order` sort";
+    const std::string setting = loses_much(order) ? "" : "`order` sort";
     if (order.backward_steps * 50 > order.rows) {
       add(FindingKind::fault, "unordered", "the rows are not in the order of time: " + problem, seen, setting);
     } else if (repeats) {
@@ -178,7 +178,7 @@ class Doctor {
             "of measuring",
             rows, runs, runs == 1 ? "" : "s", first_row),
         fmt::format("{} rows in {:.3f} s are {:.1f} Hz, by the median step {:.1f} Hz; use the tracker's own clock "
-                    "(`gaze-time-column`)",
+                    "(`time-column`)",
                     log_.samples.size(), seconds,
                     static_cast<double>(log_.samples.size() - 1) / std::max(seconds, 1e-9),
                     report_.timing.median_rate_hz));
@@ -192,7 +192,7 @@ class Doctor {
     const bool is_named = std::any_of(kUnits.begin(), kUnits.end(), [&](const auto& u) { return u.second == now; });
     for (const auto& [other, wanted] : kUnits) {
       if (whole_ != nullptr && is_named && wanted == now + shift) {
-        return fmt::format("`gaze-time-unit` {}", other);
+        return fmt::format("`time-unit` {}", other);
       }
     }
     return {};
@@ -276,7 +276,7 @@ class Doctor {
       const Vec3d at = rows.at(i);
       zeros += at.x == corner.x && at.y == corner.y && is_usable(rows[i].validity) ? 1 : 0;
     }
-    if (whole_->conventions.missing_value == 0 || zeros < 3 || zeros * 2000 < log_.order.rows) {
+    if (zeros < 3 || zeros * 2000 < log_.order.rows) {
       return;
     }
     // In degrees, straight ahead is a place like any other: zeros are missing values only where gaze comes and goes by
@@ -289,7 +289,7 @@ class Doctor {
                     log_.order.rows),
         "statistics: noise never gives exact zeros in both axes that often" +
             read_otherwise([](Conventions& c) { c.zero_is_missing = true; }),
-        "`gaze-zero-missing`");
+        "`missing-value` 0");
   }
 
   void recurring_place() {
@@ -316,7 +316,7 @@ class Doctor {
                     log_.order.rows, where),
         "statistics: gaze comes to this place again and again, and by jumps" +
             (option_takes_it ? read_otherwise([&](Conventions& c) { c.missing_value = mark; }) : ""),
-        option_takes_it ? fmt::format("`gaze-missing-value` {}", mark) : "");
+        option_takes_it ? fmt::format("`missing-value` {}", mark) : "");
   }
 
   // Trackers that lose one axis alone write their mark, a whole negative number, into that one.
@@ -357,7 +357,7 @@ class Doctor {
                     most->second * stride, most->first),
         "statistics: a whole number beside the display that comes again and again" +
             read_otherwise([&](Conventions& c) { c.missing_value = most->first; }),
-        fmt::format("`gaze-missing-value` {}", most->first));
+        fmt::format("`missing-value` {}", most->first));
   }
 
   // Positions that exceed the display's height but never its width suggest exchanged axes.
@@ -387,7 +387,7 @@ class Doctor {
           fmt::format("statistics: {:.0f} % of the samples lie beside the display, {:.0f} % with x and y exchanged",
                       share(beside), share(beside_swapped)) +
               read_otherwise([](Conventions& c) { c.swap_xy = !c.swap_xy; }),
-          "`gaze-swap-xy`");
+          "`swap-xy`");
     }
   }
 
@@ -400,7 +400,7 @@ class Doctor {
       add(FindingKind::note, "scene-camera",
           "the gaze lies on the picture of a camera on the head: it can be looked at and converted, but is no place on "
           "a display to render from",
-          "the format; where the log has directions, `gaze-frame` head takes them; else map gaze onto the display");
+          "the format; where the log has directions, `frame` head takes them; else map gaze onto the display");
     }
     if (loss.samples == 1) {
       add(FindingKind::suspicion, "one-row",
@@ -410,7 +410,7 @@ class Doctor {
     lost_ends();
     if (loss.usable == 0) {
       add(FindingKind::suspicion, "nothing-usable", "no sample is usable",
-          "check which column says what is valid: `gaze-validity-column`, `gaze-valid-values`");
+          "check which column says what is valid: `validity-column`, `valid-values`");
     } else if (share(loss.usable) < 0.5) {
       add(FindingKind::note, "lost", fmt::format("only {:.1f} % of the samples are usable", 100 * share(loss.usable)),
           "the log's own validity");
@@ -434,7 +434,7 @@ class Doctor {
                       report_.frozen.runs, static_cast<double>(report_.frozen.longest_ns) * 1e-6,
                       report_.frozen.longest_row),
           "data held while the eye was lost, or a logger that repeats; a validity column would tell "
-          "(`gaze-validity-column`)");
+          "(`validity-column`)");
     }
     if (tells && report_.frozen.samples * 20 <= loss.usable && report_.frozen.longest_ns >= 1'000'000'000) {
       add(FindingKind::note, "frozen",

@@ -12,6 +12,7 @@ inline constexpr std::array kReportedValidities{GazeValidity::ok,         GazeVa
                                                 GazeValidity::blink,      GazeValidity::lost,
                                                 GazeValidity::off_screen, GazeValidity::interpolated};
 inline constexpr std::array kReportedEvents{GazeEventType::fixation, GazeEventType::saccade, GazeEventType::blink,
-                                            GazeEventType::message,  GazeEventType::segment, GazeEventType::aoi};
+                                            GazeEventType::message,  GazeEventType::segment, GazeEventType::trial,
+                                            GazeEventType::aoi};
 
 }  // namespace gazetrace

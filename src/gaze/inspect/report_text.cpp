@@ -53,9 +53,9 @@ std::string geometry_text(const DisplayGeometry& g) {
 void write_log(const GazeInspection& r, Text& text) {
   text.plain(r.source);
   text.line("format", "{}{}, {}", r.format,
-            r.format == "generic"     ? " (a table that no format claims; `gaze-format` names one)"
+            r.format == "generic"     ? " (a table that no format claims; `format` names one)"
             : r.format_confidence < 1 ? fmt::format(" (known by the content of the file, with {:.0f} % certainty; "
-                                                    "`gaze-format` names another)",
+                                                    "`format` names another)",
                                                     100 * r.format_confidence)
                                       : "",
             r.kind == GazeKind::direction ? "directions from the head"

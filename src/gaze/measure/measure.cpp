@@ -12,6 +12,7 @@
 #include "gaze/measure/measurements_json.hpp"
 #include "gazetrace/gaze_event_check.hpp"
 #include "gazetrace/gaze_event_durations.hpp"
+#include "gazetrace/gaze_trials.hpp"
 
 namespace gazetrace {
 namespace {
@@ -84,18 +85,14 @@ std::string vergence_table(const GazeLog& log, const GazePlane& plane, const std
   return table;
 }
 
-// None where the log does not divide by itself and no rule was given.
-std::vector<GazeTrial> trials_of(const GazeLog& log, const TrialSettings& settings) {
-  const bool has_rule = settings.by || !settings.begin.empty() || !settings.table.empty();
-  if (log.trial || !settings.trial.empty()) {
+// None where the log does not divide.
+std::vector<GazeTrial> trials_of(const GazeLog& log) {
+  if (log.trial) {
     return {};
   }
   try {
-    return find_trials(log, settings);
+    return find_trials(log);
   } catch (const Error&) {
-    if (has_rule) {
-      throw;
-    }
     return {};
   }
 }
@@ -146,7 +143,7 @@ GazeMeasurements measure_gaze(const GazeLog& recorded, const GazeMeasureSettings
     }
   }
   measured.main_sequence = fit_main_sequence(measured.events.events);
-  measured.trials = trials_of(log, settings.trials);
+  measured.trials = trials_of(log);
   for (GazeTrial& trial : measured.trials) {
     trial.name = settings.keep_ids ? trial.name : "";
   }

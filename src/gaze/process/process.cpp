@@ -167,7 +167,7 @@ ProcessedGaze process_gaze(const GazeLog& log, const std::vector<GazeStep>& step
   }
   if (log.kind == GazeKind::scene_camera) {
     throw Error(ErrorKind::input, log.source, "gaze on a scene camera's picture has no angles to process it in",
-                "use `gaze-frame` head, or a log mapped to a surface");
+                "use `frame` head, or a log mapped to a surface");
   }
   processed.log.eyes.clear();
   for (const GazeStep& step : steps) {

@@ -47,7 +47,7 @@ void check_alike(const BidsColumns& columns, const Sidecars& sidecars, const Bid
     refuse(fmt::format("its Units of {} are '{}', and '{}' of the recording beside it", its.x_name,
                        other.text(its.x_name + ".Units").substr(0, 40),
                        sidecars.text(columns.x_name + ".Units").substr(0, 40)),
-           "; or give the `gaze-unit` of both");
+           "; or give the `unit` of both");
   }
 }
 
@@ -76,7 +76,7 @@ void join_other_eyes(const BidsName& name, const Sidecars& sidecars, const BidsC
       continue;
     }
     read.push_back(eye);
-    const GazeFile sibling{path, read_bids_table(path)};
+    const GazeFile sibling{path, read_bids_table(path, options.most_unpacked_bytes)};
     RawGaze second;
     second.nominal_rate_hz = raw.nominal_rate_hz;
     const BidsColumns its = read_bids_samples(sibling, other, options, second);
@@ -191,7 +191,7 @@ RawGaze read_gaze_bids(const GazeFile& file, const GazeReadOptions& options) {
       throw Error(ErrorKind::input, file.path,
                   fmt::format("its SampleCoordinateSystem is 'eye-in-head', but its places are in {}",
                               to_string(is_given ? options.columns.position_unit : unit.unit)),
-                  "gaze in the head is read in deg and rad: mend the sidecar, or give `gaze-unit` deg");
+                  "gaze in the head is read in deg and rad: mend the sidecar, or give `unit` deg");
     }
   }
   declare_places(raw, places, file.path);

@@ -396,8 +396,7 @@ class AscReader {
     const auto is_given = [&](double mark) {
       return mark == 0 ? both_are(0) : sample.at.x == mark || sample.at.y == mark;
     };
-    const bool is_mark =
-        (options_.zero_is_missing && both_are(0)) || (options_.missing_value && is_given(*options_.missing_value));
+    const bool is_mark = options_.missing_value && is_given(*options_.missing_value);
     if (is_mark) {
       sample.validity = GazeValidity::lost;
     } else if (sample.validity == GazeValidity::ok && !flags.empty()) {

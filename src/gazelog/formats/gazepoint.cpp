@@ -91,8 +91,8 @@ RawGaze read_by_ticks(const GazeFile& file, const GazeReadOptions& options, cons
   by_ticks.columns.time = ticks;
   RawGaze raw = read_gaze_gazepoint(file, by_ticks);
   raw.faults.push_back({"media", place_of(file, rows.line()), fmt::format("{} starts anew with another medium", time),
-                        fmt::format("use `gaze-time-column` {}, which goes on, or export one medium a file", ticks),
-                        "`gaze-time-column` " + ticks,
+                        fmt::format("use `time-column` {}, which goes on, or export one medium a file", ticks),
+                        "`time-column` " + ticks,
                         fmt::format("line {}: TIME starts anew with another medium", rows.line())});
   return raw;
 }

@@ -73,9 +73,9 @@ RawGaze read_gaze_neon_native(const GazeFile& file, const GazeReadOptions& optio
   }
   RawGaze raw;
   raw.way_out = has_lens ? "map gaze onto a surface in Pupil Cloud, or take directions from the head with "
-                           "`gaze-frame` head"
+                           "`frame` head"
                          : "map gaze onto a surface in Pupil Cloud, or put its scene_camera.json beside it and "
-                           "take directions from the head with `gaze-frame` head";
+                           "take directions from the head with `frame` head";
   raw.source = file.path;
   raw.format = "neon-native";
   raw.clock = "UTC, from 1970";

@@ -182,7 +182,7 @@ void settle_space(RawGaze& raw, const GazeReadOptions& options, const PoseColumn
                             "whether the poses of gaze stand in the head or in the world of the head's poses is "
                             "undecided: " +
                                 evidence,
-                            "say it with `gaze-frame` head or `gaze-frame` world", "`gaze-frame` head or world",
+                            "say it with `frame` head or `frame` world", "`frame` head or world",
                             "whether gaze stands in the head or in the world is undecided: " + evidence});
     }
     is_world = found.value_or(false);

@@ -85,7 +85,7 @@ RawGaze read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& optio
   const std::string place = place_of(file, table.header_line);
   const CloudColumns c = find_columns(table, options, place);
   RawGaze raw;
-  raw.way_out = "map gaze onto a surface in Pupil Cloud, or take directions from the head with `gaze-frame` head";
+  raw.way_out = "map gaze onto a surface in Pupil Cloud, or take directions from the head with `frame` head";
   raw.source = file.path;
   raw.format = "pupil-cloud";
   raw.clock = "UTC, from 1970";

@@ -106,7 +106,7 @@ RawGaze read_gaze_pupil_core(const GazeFile& file, const GazeReadOptions& option
   RawGaze raw;
   raw.way_out =
       "export gaze on a surface (gaze_positions_on_surface_....csv), or take directions from the head "
-      "with `gaze-frame` head";
+      "with `frame` head";
   raw.source = file.path;
   raw.format = "pupil-core";
   raw.clock = "Pupil, arbitrary zero";

@@ -111,7 +111,7 @@ double sniff_gaze_tobii_glasses2(const GazeFile& file) {
 RawGaze read_gaze_tobii_glasses2(const GazeFile& file, const GazeReadOptions& options) {
   RawGaze raw;
   raw.way_out =
-      "`gaze-frame` head takes the directions of the eyes from the head; or map gaze onto the display "
+      "`frame` head takes the directions of the eyes from the head; or map gaze onto the display "
       "and export that";
   raw.source = file.path;
   raw.format = "tobii-glasses-2";

@@ -63,15 +63,15 @@ bool has_prefix(const DelimitedTable& table, std::string_view prefix) {
   if (has_prefix(table, "Gaze point X")) {
     throw Error(ErrorKind::input, place,
                 "its gaze points are in media coordinates (MCS), relative to what was shown, not to the display",
-                "export again with DACS columns, or name the columns with `gaze-x-column` and `gaze-y-column` and give "
+                "export again with DACS columns, or name the columns with `x-column` and `y-column` and give "
                 "the size of the medium with `screen-px`");
   }
   const bool fixations = has_prefix(table, "Fixation point X") || has_prefix(table, "Mapped fixation X");
   throw Error(ErrorKind::input, place,
               fmt::format("this export has no gaze points (Gaze point X){}",
                           fixations ? ", only fixations, which leave out every saccade" : ""),
-              "export again with gaze points, or name the columns to read as places with `gaze-x-column` and "
-              "`gaze-y-column` and give their picture's size with `screen-px`");
+              "export again with gaze points, or name the columns to read as places with `x-column` and "
+              "`y-column` and give their picture's size with `screen-px`");
 }
 
 // Glasses have an accelerometer and a gyroscope, and gaze in space or mapped onto snapshots.
@@ -182,9 +182,9 @@ RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
     raw.kind = GazeKind::direction;
   } else if (!c.is_declared && c.is_glasses) {
     raw.way_out = has_directions
-                      ? "take directions from the head with `gaze-frame` head"
+                      ? "take directions from the head with `frame` head"
                       : "export directions of gaze (HUCS), or read the glasses' own files (gazedata.gz) with "
-                        "`gaze-frame` head";
+                        "`frame` head";
     raw.kind = GazeKind::scene_camera;
   }
   const bool unit_stated = !table.headings[c.time].unit.empty();

@@ -79,7 +79,7 @@ RawGaze read_gaze_tobii_sdk(const GazeFile& file, const GazeReadOptions& options
   const auto own = table.find_any({"device_time_stamp", "system_time_stamp"});
   if (!own && options.columns.time.empty()) {
     throw Error(ErrorKind::input, place, "there is no column device_time_stamp or system_time_stamp",
-                "name it with `gaze-time-column`");
+                "name it with `time-column`");
   }
   RawGaze raw;
   raw.source = file.path;

@@ -76,7 +76,7 @@ RawGaze read_gaze_varjo(const GazeFile& file, const GazeReadOptions& options) {
   }
   if (c.time.empty() && options.columns.time.empty()) {
     throw Error(ErrorKind::input, place_of(file, table.header_line), "there is no column raw_timestamp",
-                "older exports have other times: name one with `gaze-time-column` and `gaze-time-unit`");
+                "older exports have other times: name one with `time-column` and `time-unit`");
   }
   c.time_unit = TimeUnit::ns;
   c.x = "gaze_forward_x";

@@ -178,7 +178,7 @@ std::vector<GazeChannels> find_gazes(const std::vector<Channel>& channels, const
     throw Error(ErrorKind::input, path,
                 labels.empty() ? "the gaze stream's channels have no labels"
                                : fmt::format("no channels of gaze x and y among: {}", labels.substr(0, 300)),
-                "name them with `gaze-x-column` and `gaze-y-column`");
+                "name them with `x-column` and `y-column`");
   }
   return gazes;
 }
@@ -288,7 +288,7 @@ RawGaze read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
   const std::vector<GazeChannels> gazes = find_gazes(channels, options, file.path);
   const GazeChannels& first = gazes.front();
   if (first.is_scene_camera) {
-    raw.way_out = "stream gaze on a surface, or look at it with `gaze-frame` scene-camera";
+    raw.way_out = "stream gaze on a surface, or look at it with `frame` scene-camera";
   }
   raw.kind = first.is_direction      ? GazeKind::direction
              : first.is_scene_camera ? GazeKind::scene_camera

@@ -72,7 +72,7 @@ OptionSchema<CompareJob> compare_schema() {
                "over a frame, as where windows stand for the whole; other metrics are refused beside it");
   add_limits(schema);
   add_sequence_options(schema);
-  schema.include(gaze_file_schema(), shared(&JobSettings::gaze));
+  schema.include(gaze_choice_schema(), shared(&JobSettings::gaze));
   schema.include(screen_schema(), shared(&JobSettings::screen));
   add_result_options(schema);
   return schema;

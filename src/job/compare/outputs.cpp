@@ -26,8 +26,7 @@ std::set<fs::path> files_read(const CompareJob& job, const CompareInputs& inputs
       read.insert(place_of(picture_path(pattern, frame)));
     }
   }
-  for (const std::string& path :
-       {job.shared.gaze.path, job.shared.gaze.columns_file, job.shared.screen.name, job.pooling_weights}) {
+  for (const std::string& path : {job.shared.gaze.path, job.shared.screen.name, job.pooling_weights}) {
     if (!path.empty()) {
       read.insert(place_of(path));
     }

@@ -12,31 +12,6 @@ constexpr auto column(auto member) {
   return at(&GazeFileSettings::read, &GazeReadOptions::columns, member);
 }
 
-void add_column_options(OptionSchema<GazeFileSettings>& schema) {
-  schema.value("--gaze-time-column", column(&GazeColumns::time), "NAME", Touch::gaze, "Column of the stamps");
-  schema.value("--gaze-x-column", column(&GazeColumns::x), "NAME", Touch::gaze,
-               "Column of the horizontal position, or direction x");
-  schema.value("--gaze-y-column", column(&GazeColumns::y), "NAME", Touch::gaze,
-               "Column of the vertical position, or direction y");
-  schema.value("--gaze-z-column", column(&GazeColumns::z), "NAME", Touch::gaze, "Column of direction z");
-  schema.value("--gaze-validity-column", column(&GazeColumns::validity), "NAME", Touch::gaze,
-               "Column that says which samples are valid");
-  schema.value("--gaze-valid-values", column(&GazeColumns::valid_values), "TEXT,TEXT", Touch::gaze,
-               "Values of that column that mean a valid sample; default: 1, true, ok, valid");
-  schema.value("--gaze-confidence-column", column(&GazeColumns::confidence), "NAME", Touch::gaze,
-               "Column of the confidence");
-  schema.value("--gaze-pupil-column", column(&GazeColumns::pupil), "NAME", Touch::gaze, "Column of the pupil's size");
-  schema.value("--gaze-eye-column", column(&GazeColumns::eye), "NAME", Touch::gaze, "Column of the eye");
-  schema.value("--gaze-recording-column", column(&GazeColumns::recording), "NAME", Touch::gaze,
-               "Column that tells the recordings of a file apart");
-  schema.value("--gaze-time-unit", column(&GazeColumns::time_unit), choices<TimeUnit>(), Touch::gaze,
-               "Unit of the stamps");
-  schema.value("--gaze-unit", column(&GazeColumns::position_unit), choices<PositionUnit>(), Touch::gaze,
-               "Unit of the positions");
-  schema.value("--gaze-origin", column(&GazeColumns::origin), choices<PositionOrigin>(), Touch::gaze,
-               "Where (0, 0) is");
-}
-
 void add_clock_options(JobSchema& schema) {
   schema
       .value("--gaze-offset", &JobSettings::gaze_offset, "DURATION", Touch::gaze,
@@ -106,28 +81,83 @@ void add_time_options(JobSchema& schema) {
   add_clock_options(schema);
 }
 
-constexpr auto trial(auto member) {
-  return at(&GazeFileSettings::trials, member);
+constexpr auto rule(auto member) {
+  return at(&GazeFileSettings::trial_rules, member);
+}
+
+void add_column_options(OptionSchema<GazeFileSettings>& schema) {
+  schema.group("Columns of a table");
+  schema.value("--time-column", column(&GazeColumns::time), "NAME", Touch::gaze, "Column of the stamps");
+  schema.value("--x-column", column(&GazeColumns::x), "NAME", Touch::gaze,
+               "Column of the horizontal position, or direction x");
+  schema.value("--y-column", column(&GazeColumns::y), "NAME", Touch::gaze,
+               "Column of the vertical position, or direction y");
+  schema.value("--z-column", column(&GazeColumns::z), "NAME", Touch::gaze, "Column of direction z");
+  schema.value("--validity-column", column(&GazeColumns::validity), "NAME", Touch::gaze,
+               "Column that says which samples are valid");
+  schema.value("--valid-values", column(&GazeColumns::valid_values), "TEXT,TEXT", Touch::gaze,
+               "Values of that column that mean a valid sample; default: 1, true, ok, valid");
+  schema.value("--confidence-column", column(&GazeColumns::confidence), "NAME", Touch::gaze,
+               "Column of the confidence");
+  schema.value("--pupil-column", column(&GazeColumns::pupil), "NAME", Touch::gaze, "Column of the pupil's size");
+  schema.value("--eye-column", column(&GazeColumns::eye), "NAME", Touch::gaze, "Column of the eye");
+  schema.value("--recording-column", column(&GazeColumns::recording), "NAME", Touch::gaze,
+               "Column that tells the recordings of a file apart");
+  schema
+      .value("--columns", &GazeFileSettings::columns_file, "FILE", Touch::gaze,
+             "Column map as JSON, for tables of one's own; 'gazetrace gaze inspect --save-columns' writes one")
+      .decides_by_file();
+}
+
+void add_convention_options(OptionSchema<GazeFileSettings>& schema) {
+  schema.group("What the numbers mean");
+  schema.value("--format", gaze_read(&GazeReadOptions::format), "NAME", Touch::gaze,
+               "Format of the log ('gazetrace list gaze-formats'); default: found by its content");
+  schema.value("--time-unit", column(&GazeColumns::time_unit), choices<TimeUnit>(), Touch::gaze, "Unit of the stamps");
+  schema.value("--unit", column(&GazeColumns::position_unit), choices<PositionUnit>(), Touch::gaze,
+               "Unit of the positions");
+  schema.value("--origin", column(&GazeColumns::origin), choices<PositionOrigin>(), Touch::gaze, "Where (0, 0) is");
+  schema.value("--corner", gaze_read(&GazeReadOptions::corner), "X,Y", Touch::gaze,
+               "The log's x and y of the display's top left corner, such as 1920,0 on the right one of two monitors");
+  schema.value("--axes", column(&GazeColumns::axes), choices<GazeAxes>(), Touch::gaze,
+               "Axes of directions: gl looks along -z, unity left-handed along +z, sranipal along +z with x to the "
+               "left, cv along +z with y down; default: the format's own");
+  schema.value("--frame", gaze_read(&GazeReadOptions::frame), choices<GazeFrame>(), Touch::gaze,
+               "Which gaze is taken of a log that states several: head, directions from the head; scene-camera, places "
+               "on the scene camera's picture; world, directions in the space of the head's poses");
+  schema.value("--min-confidence", &GazeFileSettings::min_confidence, "SHARE", Touch::gaze,
+               "Samples of less confidence are not used; default: the format's own, such as 0.6 for Pupil Core");
+  schema.value("--missing-value", gaze_read(&GazeReadOptions::missing_value), "VALUE", Touch::gaze,
+               "The number, such as -1, that the log has where it has no position, in both axes or in one; 0 counts in "
+               "both only; -32768, and magnitudes from 1e7 on, always mean that");
+  schema.value("--order", gaze_read(&GazeReadOptions::unordered), choices<UnorderedPolicy>(), Touch::gaze,
+               "Stamps that do not grow: an error; sorted, where the last of equal ones is kept; equal ones in pairs "
+               "stand half a step apart; a counter that overflowed (at 2^16 or 2^32) goes on");
+  schema.flag("--swap-xy", gaze_read(&GazeReadOptions::swap_xy), Touch::gaze, "Exchanges the two axes");
+  schema.flag("--flip-x", gaze_read(&GazeReadOptions::flip_x), Touch::gaze, "Exchanges left and right");
+  schema.flag("--flip-y", gaze_read(&GazeReadOptions::flip_y), Touch::gaze, "Exchanges top and bottom");
+  schema.flag(
+      "--decimal-comma", gaze_read(&GazeReadOptions::decimal_comma), Touch::gaze,
+      "Numbers have decimal commas although commas also separate the columns; not needed with tabs or semicolons");
+  schema
+      .value("--events", gaze_read(&GazeReadOptions::events_file), "FILE", Touch::gaze,
+             "A table of fixations, saccades or blinks that another program found in this log: they become its events")
+      .decides_by_file();
 }
 
 void add_trial_options(OptionSchema<GazeFileSettings>& schema) {
-  schema.value("--trial", trial(&TrialSettings::trial), "NUMBER|NAME", Touch::gaze,
-               "Only this trial of the log, whose beginning becomes video time 0 ('gazetrace gaze trials' lists them)");
-  schema.value("--trial-by", trial(&TrialSettings::by), choices<TrialSplit>(), Touch::gaze,
-               "What divides the log into trials: its own blocks (START to END), messages, or a table; default: what "
-               "the options below give, else blocks");
-  schema.value("--trial-start", trial(&TrialSettings::begin), "PATTERN", Touch::gaze,
+  schema.group("Trials, which are blocks of the log unless they are named here");
+  schema.value("--trial-start", rule(&TrialRules::begin), "PATTERN", Touch::gaze,
                "A message that begins a trial: a part of its text, or all of it with * and ?");
-  schema.value("--trial-end", trial(&TrialSettings::end), "PATTERN", Touch::gaze,
+  schema.value("--trial-end", rule(&TrialRules::end), "PATTERN", Touch::gaze,
                "A message that ends it; default: where the next one begins, or its block ends");
   schema
-      .value("--trial-nth", trial(&TrialSettings::nth), "N", Touch::gaze,
+      .value("--trial-nth", rule(&TrialRules::nth), "N", Touch::gaze,
              "Only the Nth message that fits begins a trial; 0: every one")
       .at_least(0);
-  schema.flag("--trial-per-block", trial(&TrialSettings::per_block), Touch::gaze,
-              "Counts --trial-nth anew in each block");
+  schema.flag("--trial-per-block", rule(&TrialRules::per_block), Touch::gaze, "Counts --trial-nth anew in each block");
   schema
-      .value("--trial-table", trial(&TrialSettings::table), "FILE", Touch::gaze,
+      .value("--trial-table", rule(&TrialRules::table), "FILE", Touch::gaze,
              "Trials as a table: onset and duration in seconds on the log's clock, as in BIDS events, or onset_ns and "
              "offset_ns; a name or trial_type each")
       .decides_by_file();
@@ -135,50 +165,24 @@ void add_trial_options(OptionSchema<GazeFileSettings>& schema) {
 
 }  // namespace
 
-OptionSchema<GazeFileSettings> gaze_file_schema() {
+OptionSchema<GazeFileSettings> gaze_choice_schema() {
   OptionSchema<GazeFileSettings> schema;
   schema.group("Gaze log");
-  schema.value("--gaze-format", gaze_read(&GazeReadOptions::format), "NAME", Touch::gaze,
-               "Format of the log ('gazetrace list gaze-formats'); default: found by its content");
   schema.value("--gaze-recording", gaze_read(&GazeReadOptions::recording), "NUMBER|NAME", Touch::gaze,
                "Which recording, or which block, of a file that holds several: 'gazetrace gaze inspect' lists them");
-  schema
-      .value("--gaze-events", gaze_read(&GazeReadOptions::events_file), "FILE", Touch::gaze,
-             "A table of fixations, saccades or blinks that another program found in this log: they become its events")
-      .decides_by_file();
-  add_column_options(schema);
-  schema.value("--gaze-order", gaze_read(&GazeReadOptions::unordered), choices<UnorderedPolicy>(), Touch::gaze,
-               "Stamps that do not grow: an error; sorted, where the last of equal ones is kept; equal ones in pairs "
-               "stand half a step apart; a counter that overflowed (at 2^16 or 2^32) goes on");
-  schema
-      .value("--gaze-columns", &GazeFileSettings::columns_file, "FILE", Touch::gaze,
-             "Column map as JSON, for tables of one's own; 'gazetrace gaze inspect --save-columns' writes one")
-      .decides_by_file();
-  schema.value("--gaze-axes", column(&GazeColumns::axes), choices<GazeAxes>(), Touch::gaze,
-               "Axes of directions: gl looks along -z, unity left-handed along +z, sranipal along +z with x to the "
-               "left, cv along +z with y down; default: the format's own");
-  schema.value("--gaze-frame", gaze_read(&GazeReadOptions::frame), choices<GazeFrame>(), Touch::gaze,
-               "Which gaze is taken of a log that states several: head, directions from the head; scene-camera, places "
-               "on the scene camera's picture; world, directions in the space of the head's poses");
   schema.value(
       "--gaze-eye", gaze_read(&GazeReadOptions::eye), choices<EyeChoice>(), Touch::gaze,
       "Which gaze is taken of a log of both eyes; auto: its combined gaze, else the mean of both eyes by angle, or the "
       "better eye where the two differ vertically by more than half a degree in the median");
-  schema.value("--gaze-dominant", gaze_read(&GazeReadOptions::dominant_eye), choices<Eye>(), Touch::gaze,
-               "The eye that --gaze-eye dominant takes");
-  schema.value("--gaze-min-confidence", &GazeFileSettings::min_confidence, "SHARE", Touch::gaze,
-               "Samples of less confidence are not used; default: the format's own, such as 0.6 for Pupil Core");
-  schema.flag("--gaze-zero-missing", gaze_read(&GazeReadOptions::zero_is_missing), Touch::gaze,
-              "Takes positions of exactly (0, 0) for missing ones");
-  schema.value("--gaze-missing-value", gaze_read(&GazeReadOptions::missing_value), "VALUE", Touch::gaze,
-               "The number, such as -1, that the log has where it has no position, in both axes or in one; 0 counts in "
-               "both only; -32768, and magnitudes from 1e7 on, always mean that");
-  schema.flag("--gaze-swap-xy", gaze_read(&GazeReadOptions::swap_xy), Touch::gaze, "Exchanges the two axes");
-  schema.flag("--gaze-flip-x", gaze_read(&GazeReadOptions::flip_x), Touch::gaze, "Exchanges left and right");
-  schema.flag("--gaze-flip-y", gaze_read(&GazeReadOptions::flip_y), Touch::gaze, "Exchanges top and bottom");
-  schema.flag(
-      "--gaze-decimal-comma", gaze_read(&GazeReadOptions::decimal_comma), Touch::gaze,
-      "Numbers have decimal commas although commas also separate the columns; not needed with tabs or semicolons");
+  schema.value("--trial", &GazeFileSettings::trial, "NUMBER|NAME", Touch::gaze,
+               "Only this trial of the log, whose beginning becomes video time 0 ('gazetrace gaze trials' lists them)");
+  return schema;
+}
+
+OptionSchema<GazeFileSettings> gaze_import_schema() {
+  OptionSchema<GazeFileSettings> schema = gaze_choice_schema();
+  add_column_options(schema);
+  add_convention_options(schema);
   add_trial_options(schema);
   return schema;
 }
@@ -203,7 +207,7 @@ void add_gaze_options(JobSchema& schema) {
       .decides_by_file()
       .with(Trait::gaze_source)
       .with(Trait::everyday);
-  schema.include(gaze_file_schema(), &JobSettings::gaze);
+  schema.include(gaze_choice_schema(), &JobSettings::gaze);
   add_time_options(schema);
   schema.include(gaze_process_schema(), &JobSettings::gaze_process).idle_when({without_gaze_log()});
 }

@@ -97,7 +97,7 @@ TEST_F(GazeAxisFindings, WitnessesOfEachEyeTellWhichIsFlipped) {
     EXPECT_THAT(codes(good), IsEmpty());
     EXPECT_EQ(good.axes[1].verdict, AxisVerdict::confirmed);
     options.eye = left ? EyeChoice::left : EyeChoice::right;
-    EXPECT_THAT(inspect("a.asc", text, options).settings, ElementsAre("`gaze-flip-y`"));
+    EXPECT_THAT(inspect("a.asc", text, options).settings, ElementsAre("`flip-y`"));
   }
 }
 
@@ -126,7 +126,7 @@ TEST_F(GazeAxisFindings, AWitnessOfOneEyeLeavesTheOtherUntested) {
     EXPECT_THAT(report.axes[1].evidence, HasSubstr("nothing tells of the right eye"));
     if (flipped == Eye::left) {
       EXPECT_THAT(codes(report), ElementsAre("y-flip", "one-eye-untested"));
-      EXPECT_THAT(report.settings, ElementsAre("`gaze-flip-y`", "`gaze-eye` left"));
+      EXPECT_THAT(report.settings, ElementsAre("`flip-y`", "`gaze-eye` left"));
     } else {
       EXPECT_THAT(codes(report), IsEmpty());
       EXPECT_THAT(report.verdict, HasSubstr("the direction of y could not be tested"));

@@ -145,7 +145,7 @@ TEST(GazeInspect, VestibuloOcularReflexTellsTheSignOfAnAxis) {
     }
     report = inspect_gaze(log, {});
     EXPECT_EQ(verdict_of(report, axis), AxisVerdict::flipped) << axis;
-    EXPECT_THAT(report.settings, ::testing::ElementsAre(std::string("`gaze-flip-") + axis + "`"));
+    EXPECT_THAT(report.settings, ::testing::ElementsAre(std::string("`flip-") + axis + "`"));
     EXPECT_EQ(report.findings.front().kind, FindingKind::suspicion);
   }
 }

@@ -9,6 +9,7 @@
 #include "gazetrace/gaze.hpp"
 #include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/gaze_trials.hpp"
+#include "gazetrace/gaze_write.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace gazetrace {
@@ -40,6 +41,12 @@ GazeLog blocks_and_messages() {
   return log;
 }
 
+// The trials that rules give, as an import names them.
+std::vector<GazeTrial> trials_by(const TrialRules& rules, GazeLog log = blocks_and_messages()) {
+  name_trials(log, rules);
+  return find_trials(log);
+}
+
 std::string listing(const std::vector<GazeTrial>& trials) {
   std::string text;
   for (const GazeTrial& t : trials) {
@@ -49,21 +56,21 @@ std::string listing(const std::vector<GazeTrial>& trials) {
 }
 
 TEST(GazeTrials, BlocksAreTrials) {
-  EXPECT_EQ(listing(find_trials(blocks_and_messages(), {})), "1:5000-5990/1 2:7000-7990/2 3:9000-9990/3 ");
+  EXPECT_EQ(listing(find_trials(blocks_and_messages())), "1:5000-5990/1 2:7000-7990/2 3:9000-9990/3 ");
 }
 
 TEST(GazeTrials, MessagesBeginAndEndTrials) {
-  TrialSettings settings;
+  TrialRules settings;
   settings.begin = "IMAGE ON";
   // Up to the next one, but never beyond its block.
-  EXPECT_EQ(listing(find_trials(blocks_and_messages(), settings)),
+  EXPECT_EQ(listing(trials_by(settings)),
             "1:5100-5399/1 2:5400-5699/1 3:5700-5990/1 4:7100-7399/2 5:7400-7699/2 6:7700-7990/2 7:9100-9399/3 "
             "8:9400-9699/3 9:9700-9990/3 ");
   settings.end = "IMAGE OFF";
   settings.nth = 2;
-  EXPECT_EQ(listing(find_trials(blocks_and_messages(), settings)), "1:5400-5600/1 ");
+  EXPECT_EQ(listing(trials_by(settings)), "1:5400-5600/1 ");
   settings.per_block = true;
-  EXPECT_EQ(listing(find_trials(blocks_and_messages(), settings)), "1:5400-5600/1 2:7400-7600/2 3:9400-9600/3 ");
+  EXPECT_EQ(listing(trials_by(settings)), "1:5400-5600/1 2:7400-7600/2 3:9400-9600/3 ");
 }
 
 TEST(GazeTrials, PatternsFitTheWholeTextOrAPart) {
@@ -79,12 +86,12 @@ TEST(GazeTrials, PatternsFitTheWholeTextOrAPart) {
 
 TEST(GazeTrials, ATableIsInSecondsOrNanoseconds) {
   const TemporaryFolder folder;
-  TrialSettings settings;
+  TrialRules settings;
   settings.table = folder / "trials.tsv";
   std::ofstream(settings.table)
       << "onset\tduration\ttrial_type\n7.1\t0.25\tsecond\n5.000000001\t0.5\t\"first\"\n99\t1\tnone\n";
   const GazeLog log = blocks_and_messages();
-  const std::vector<GazeTrial> trials = find_trials(log, settings);
+  const std::vector<GazeTrial> trials = trials_by(settings, log);
   ASSERT_EQ(trials.size(), 2U);  // there is no sample in the last one
   EXPECT_EQ(trials[0].name, "first");
   EXPECT_EQ(trials[0].begin_ns, 5'000'000'001);
@@ -96,7 +103,7 @@ TEST(GazeTrials, ATableIsInSecondsOrNanoseconds) {
   EXPECT_THROW((void)trial_by_name(trials, "third"), Error);
   std::ofstream(settings.table) << "onset,duration\n7.1,-1\n";
   try {
-    find_trials(log, settings);
+    trials_by(settings, log);
     FAIL();
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("trials.tsv:2: the trial ends before it begins"), std::string::npos)
@@ -108,9 +115,7 @@ TEST(GazeTrials, ACutLogHoldsTheTrialAlone) {
   GazeLog log = blocks_and_messages();
   log.calibrations.push_back({1'000 * kMs, Eye::left, 0.4, 0.8, 1});
   log.calibrations.push_back({8'500 * kMs, Eye::left, 0.9, 1.8, 2});
-  TrialSettings settings;
-  settings.trial = "2";
-  const GazeLog cut = chosen_trial(log, settings);
+  const GazeLog cut = chosen_trial(log, "2");
   ASSERT_EQ(cut.samples.size(), 100U);
   EXPECT_EQ(cut.samples.front().row, 101);
   EXPECT_EQ(cut.calibrations.size(), 1U);  // the one that was made before it
@@ -127,19 +132,43 @@ TEST(GazeTrials, ACutLogHoldsTheTrialAlone) {
   EXPECT_EQ(counted.trial->begin_ns, 0);
 }
 
+// What names trials need not be there any more: they are in the file, as numbers only where nobody asked for names.
+TEST(GazeTrials, NamedTrialsOutliveAnImport) {
+  const TemporaryFolder folder;
+  GazeLog log = blocks_and_messages();
+  TrialRules rules;
+  rules.begin = "IMAGE ON";
+  name_trials(log, rules);
+  name_trials(log, {});  // no rule takes nothing away
+  const std::string named = listing(find_trials(log));
+  EXPECT_EQ(find_trials(log).at(4).name, "IMAGE ON 1");
+  GazeLog nameless = log;
+  leave_out_identities(nameless);
+  for (const bool keeps_names : {true, false}) {
+    const GazeLog& written = keeps_names ? log : nameless;
+    write_gaze_csv(written, folder / "log.csv");
+    write_gaze_bids(written, folder / "sub-1_physio.tsv.gz");
+    for (const char* const name : {"log.csv", "sub-1_recording-cyclopean_physio.tsv.gz"}) {
+      const GazeLog back = load_gaze_log(folder / name, {});
+      EXPECT_EQ(listing(find_trials(back)), named) << name;
+      EXPECT_EQ(find_trials(back).at(4).name, keeps_names ? "IMAGE ON 1" : "") << name;
+    }
+  }
+}
+
 TEST(GazeTrials, RulesThatContradictEachOtherAreRefused) {
   const GazeLog log = blocks_and_messages();
-  TrialSettings settings;
-  settings.by = TrialSplit::blocks;
+  TrialRules settings;
+  settings.table = "trials.tsv";
   settings.begin = "IMAGE ON";
-  EXPECT_THROW(find_trials(log, settings), Error);
+  EXPECT_THROW(trials_by(settings, log), Error);
   settings = {};
   settings.nth = 2;
-  EXPECT_THROW(find_trials(log, settings), Error);
+  EXPECT_THROW(trials_by(settings, log), Error);
   settings = {};
   settings.begin = "NO SUCH";
   try {
-    find_trials(log, settings);
+    trials_by(settings, log);
     FAIL();
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("the log has 3 blocks and 18 messages"), std::string::npos)

@@ -87,7 +87,7 @@ TEST_F(GazeBidsRecordings, PupilsOfTwoUnitsAreSaid) {
 TEST_F(GazeBidsRecordings, GazeInTheHeadIsInAngles) {
   const std::string space = R"(, "SampleCoordinateSystem": "eye-in-head")";
   EXPECT_THAT(refusal_of(eye("eye1", "left", "pixel", space)),
-              AllOf(HasSubstr("eye-in-head"), HasSubstr("in px"), HasSubstr("`gaze-unit` deg")));
+              AllOf(HasSubstr("eye-in-head"), HasSubstr("in px"), HasSubstr("`unit` deg")));
   GazeReadOptions deg;
   deg.columns.position_unit = PositionUnit::deg;
   const std::string rows = "2\t10\t-5\t3\n4\t10\t-5\t3\n";

@@ -59,7 +59,7 @@ TEST_F(GazeBidsUnits, OthersAreRefusedUnlessTheUserSays) {
   for (const std::string& text :
        {units("arbitrary", "arbitrary"), units("pixel", "mm"), units("m", "cm"), units("rad", "deg"), std::string()}) {
     const std::string path = recording(text, R"(["top", "left"])", "250\t125");
-    EXPECT_THAT(refusal_of(path), AllOf(HasSubstr("Units"), HasSubstr("`gaze-unit`"))) << text;
+    EXPECT_THAT(refusal_of(path), AllOf(HasSubstr("Units"), HasSubstr("`unit`"))) << text;
     const GazeLog log = load_gaze_log(path, px);
     EXPECT_EQ(log.samples[0].u, 0.25) << text;
     EXPECT_EQ(log.samples[0].v, 0.25) << text;
@@ -73,12 +73,12 @@ TEST_F(GazeBidsUnits, OriginsOnTheRightAreRefusedOrTurned) {
   const auto path = [&](const std::string& origin) { return recording(units("pixel", "pixel"), origin, "250\t100"); };
   EXPECT_EQ(load_gaze_log(path(R"(["left", "BOTTOM"])"), {}).samples[0].v, 0.8);
   EXPECT_EQ(load_gaze_log(path(R"(["top", "left"])"), {}).samples[0].v, 0.2);
-  EXPECT_THAT(refusal_of(path(R"(["top", "right"])")), AllOf(HasSubstr("top, right"), HasSubstr("`gaze-flip-x`")));
+  EXPECT_THAT(refusal_of(path(R"(["top", "right"])")), AllOf(HasSubstr("top, right"), HasSubstr("`flip-x`")));
   GazeReadOptions flip;
   flip.flip_x = true;
   EXPECT_EQ(load_gaze_log(path(R"(["top", "right"])"), flip).samples[0].u, 0.75);
   EXPECT_EQ(load_gaze_log(path(R"(["bottom", "right"])"), flip).samples[0].v, 0.8);
-  EXPECT_THAT(refusal_of(path(R"(["center", "left"])")), HasSubstr("`gaze-origin`"));
+  EXPECT_THAT(refusal_of(path(R"(["center", "left"])")), HasSubstr("`origin`"));
   GazeReadOptions given;
   given.columns.origin = PositionOrigin::bottom_left;
   EXPECT_EQ(load_gaze_log(path(R"(["center", "left"])"), given).samples[0].v, 0.8);

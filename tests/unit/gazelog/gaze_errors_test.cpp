@@ -42,35 +42,35 @@ TEST(GazeErrors, EmptyLogs) {
 TEST(GazeErrors, Columns) {
   expect_errors({
       {"timeless.csv", "frame,x,y\n1,2,3\n",
-       "timeless.csv:1: no column for time is found; the columns are: frame, x, y; name it with `gaze-time-column`"},
+       "timeless.csv:1: no column for time is found; the columns are: frame, x, y; name it with `time-column`"},
       {"no_x.csv", "# a\nt[ms],left,right\n1,2,3\n",
        "no_x.csv:2: no columns for the horizontal position and the vertical position are found; the columns are: "
        "t[ms], "
-       "left, right; name them with `gaze-x-column` and `gaze-y-column`"},
+       "left, right; name them with `x-column` and `y-column`"},
       {"no_y.csv", "t[ms],x[px],right\n1,2,3\n",
        "no_y.csv:1: no column for the vertical position is found; the columns are: t[ms], x[px], right; name it with "
-       "`gaze-y-column`"},
+       "`y-column`"},
       {"two.csv", "t[ms],u\n1,2\n",
        "two.csv:1: 't[ms],u' is not a table of time and position; separate the cells by commas, semicolons or tabs"},
       {"blanks.txt", "t u v\n1 2 3\n",
        "blanks.txt:1: 't u v' is not a table of time and position; separate the cells by commas, semicolons or tabs"},
       {"numbers.csv", "1,2,3\n2,3,4\n",
-       "numbers.csv:1: there is no header, only 3 columns of numbers; say by number which is which: `gaze-time-column` "
+       "numbers.csv:1: there is no header, only 3 columns of numbers; say by number which is which: `time-column` "
        "1 "
-       "`gaze-x-column` 2 `gaze-y-column` 3"},
+       "`x-column` 2 `y-column` 3"},
       {"unit.csv", "t[ms],x[inch],y[inch]\n1,2,3\n",
-       "unit.csv:1: unknown unit 'inch' of column 'x[inch]'; use [1], [px], [mm], [cm] or [deg], or give `gaze-unit`"},
+       "unit.csv:1: unknown unit 'inch' of column 'x[inch]'; use [1], [px], [mm], [cm] or [deg], or give `unit`"},
       {"mixed.csv", "t[ms],x[px],y[mm]\n1,2,3\n",
        "mixed.csv:1: columns 'x[px]' and 'y[mm]' are in different units; name two columns of one unit, or give "
-       "`gaze-unit`"},
+       "`unit`"},
       {"hours.csv", "t[h],u,v\n1,2,3\n",
-       "hours.csv:1: unknown unit 'h' of time column 't[h]'; use [s], [ms], [us] or [ns], or give `gaze-time-unit`"},
+       "hours.csv:1: unknown unit 'h' of time column 't[h]'; use [s], [ms], [us] or [ns], or give `time-unit`"},
       {"steps.csv", "time,u,v\n0,.5,.5\n100,.5,.5\n200,.5,.5\n",
        "steps.csv:1: the unit of time column 'time' is not stated and cannot be guessed from its steps; give "
-       "`gaze-time-unit`, or write it into the header: t[ms]"},
+       "`time-unit`, or write it into the header: t[ms]"},
       {"one.csv", "time,u,v\n0,.5,.5\n",
        "one.csv:1: the unit of time column 'time' is not stated and cannot be guessed from its steps; give "
-       "`gaze-time-unit`, or write it into the header: t[ms]"},
+       "`time-unit`, or write it into the header: t[ms]"},
   });
   GazeReadOptions options;
   options.columns.time = "timestmp";
@@ -111,7 +111,7 @@ TEST(GazeErrors, Rows) {
   expect_errors({
       {"backwards.csv", header + "2.433,.5,.5,1,left\n2.417,.5,.5,1,left\n",
        "backwards.csv:4: time 2417000000 ns is before that of line 3 (2433000000 ns); sort the log, or use "
-       "`gaze-order` sort"},
+       "`order` sort"},
       {"duplicate.csv", header + "1,.5,.5,1,left\n1,.6,.5,1,left\n",
        "duplicate.csv:4: time 1000000000 ns repeats that of line 3; dropping repeats would keep only 2 of 3 rows: "
        "export "
@@ -126,7 +126,7 @@ TEST(GazeErrors, Rows) {
       {"clock.csv", header + "12:30,.5,.5,1,left\n",
        "clock.csv:3: time '12:30' is a time of day; write times as numbers, such as milliseconds from the beginning, "
        "or "
-       "name the column of the tracker's own clock with `gaze-time-column`"},
+       "name the column of the tracker's own clock with `time-column`"},
       {"word.csv", header + "noon,.5,.5,1,left\n", "word.csv:3: time 'noon' is not a number" + mend},
       {"overflow.csv", header + "9223372036.854775808,.5,.5,1,left\n",
        "overflow.csv:3: time '9223372036.854775808' in s does not fit int64 nanoseconds; check the unit of the time "
@@ -164,7 +164,7 @@ TEST(GazeErrors, FilesAndFormats) {
   EXPECT_EQ(files.without_folder(
                 message_of(files.write("bytes.bin", std::string("a,b\0c,d\n", 8)), options, ErrorKind::input)),
             "bytes.bin: is not a gaze log of a known format; give a CSV or TSV with a header, or name the format with "
-            "`gaze-format`");
+            "`format`");
   EXPECT_EQ(files.without_folder(message_of(files.write("log.tsv.gz", "\x1F\x8B\x08"), options, ErrorKind::input)),
             "log.tsv.gz: gzip data are cut off; copy the file again; gzip -t tests it");
   const std::string log = files.write("log.csv", "t[ns],u[1],v[1]\n1,.5,.5\n");
@@ -178,7 +178,7 @@ TEST(GazeErrors, FilesAndFormats) {
   options.columns.origin = PositionOrigin::top_left;
   EXPECT_EQ(files.without_folder(message_of(log, options, ErrorKind::usage)),
             "log.csv:1: positions in degrees cannot count from the top-left; degrees count from straight ahead: "
-            "`gaze-origin` center");
+            "`origin` center");
 }
 
 }  // namespace

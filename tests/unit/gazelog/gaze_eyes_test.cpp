@@ -17,10 +17,9 @@ using ::testing::HasSubstr;
 
 class GazeEyes : public ::testing::Test {
  protected:
-  GazeLog read(const std::string& text, EyeChoice eye, std::optional<Eye> dominant = {}) {
+  GazeLog read(const std::string& text, EyeChoice eye) {
     GazeReadOptions options;
     options.eye = eye;
-    options.dominant_eye = dominant;
     return load_gaze_log(files_.write("log.csv", text), options);
   }
   TextFiles files_;
@@ -47,12 +46,6 @@ TEST_F(GazeEyes, ALostEyeMakesNoJump) {
     EXPECT_NEAR(s.u, 0.5, 1e-12) << s.row;
     EXPECT_EQ(s.validity, GazeValidity::ok);
   }
-  const GazeLog dominant = read(log_with_dropout(), EyeChoice::dominant, Eye::right);
-  EXPECT_NEAR(dominant.samples[0].u, 0.49, 1e-12);
-  EXPECT_NEAR(dominant.samples[39].u, 0.49, 1e-12);  // the left eye, moved to where the right one was
-  EXPECT_EQ(dominant.samples[39].eye, Eye::right);
-  const GazeLog best = read(log_with_dropout(), EyeChoice::best);
-  EXPECT_EQ(best.samples[0].u, 0.51);  // twice as many usable samples
   const GazeLog right = read(log_with_dropout(), EyeChoice::right);
   EXPECT_EQ(right.samples[39].validity, GazeValidity::lost);  // that eye alone
   ASSERT_EQ(right.eyes.size(), 40U);
@@ -80,8 +73,6 @@ TEST_F(GazeEyes, AShortAbsenceJumpsAtNeitherEnd) {
   for (const GazeSample& s : read(text, EyeChoice::mean).samples) {
     EXPECT_NEAR(s.u, 0.5, 1e-12) << s.row;
   }
-  const GazeLog right = read(text, EyeChoice::dominant, Eye::right);
-  EXPECT_NEAR(right.samples[22].u, 0.5 - 0.022, 1e-12);
 }
 
 TEST_F(GazeEyes, TheMeanIsOneOfAnglesNotOfPlaces) {
@@ -103,6 +94,21 @@ TEST_F(GazeEyes, EyesThatDifferVerticallyAreNotMeantWithoutBeingTold) {
   EXPECT_THAT(log.warnings.at(0), HasSubstr("the eyes differ vertically by 0.57 deg in the median"));
   EXPECT_EQ(log.samples[0].v, 0.5);
   EXPECT_NEAR(read(text, EyeChoice::mean).samples[0].v, 0.505, 1e-6);
+}
+
+// Of eyes that differ vertically the one with more usable samples is taken; where it is lost, the other one, moved.
+TEST_F(GazeEyes, TheOtherEyeStandsInForTheBetterOne) {
+  std::string text = std::string(kPreamble) + "t[ns],u[1],v[1],valid,eye\n";
+  for (int i = 0; i < 40; ++i) {
+    text += fmt::format("{},{},left\n", i * 10'000'000LL, i < 20 ? "0.51,0.5,ok" : ",,lost");
+    text += fmt::format("{},{},right\n", i * 10'000'000LL, i == 12 ? ",,lost" : "0.49,0.52,ok");
+  }
+  const GazeLog log = read(text, EyeChoice::automatic);
+  EXPECT_EQ(log.samples[0].u, 0.49);
+  EXPECT_EQ(log.samples[12].eye, Eye::right);
+  EXPECT_NEAR(log.samples[12].u, 0.49, 1e-6);  // not 0.51, where the left eye is
+  EXPECT_NEAR(log.samples[12].v, 0.52, 1e-6);
+  EXPECT_EQ(log.samples[12].validity, GazeValidity::ok);
 }
 
 TEST_F(GazeEyes, TheLogsOwnGazeIsTakenUnlessAnotherIsAskedFor) {
@@ -191,7 +197,7 @@ TEST_F(GazeEyes, RowsInOrderAndOthersGiveOneLog) {
     }
     return all;
   };
-  for (const EyeChoice eye : {EyeChoice::automatic, EyeChoice::left, EyeChoice::mean, EyeChoice::best}) {
+  for (const EyeChoice eye : {EyeChoice::automatic, EyeChoice::left, EyeChoice::mean}) {
     GazeReadOptions options;
     options.eye = eye;
     options.unordered = UnorderedPolicy::sort;
@@ -219,15 +225,12 @@ TEST_F(GazeEyes, RowsInOrderAndOthersGiveOneLog) {
 
 TEST_F(GazeEyes, WhatIsNotThereCannotBeChosen) {
   const std::string left_only = "t[ns],u[1],v[1],valid,eye\n0,0.7,0.5,ok,left\n";
-  for (const auto& [eye, message] : {std::pair(EyeChoice::right, "has no rows of the right eye"),
-                                     std::pair(EyeChoice::dominant, "give `gaze-dominant` left or right")}) {
-    try {
-      read(left_only, eye);
-      ADD_FAILURE() << message;
-    } catch (const Error& error) {
-      EXPECT_THAT(error.what(), HasSubstr(message));
-      EXPECT_EQ(error.kind(), ErrorKind::usage);
-    }
+  try {
+    read(left_only, EyeChoice::right);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("has no rows of the right eye"));
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
   }
 }
 

@@ -165,7 +165,7 @@ std::string xdf_without_unit(const Vec2f& most, const Vec2f& tenth) {
 
 TEST_F(GazeFormats, XdfWithoutAUnit) {
   const std::string quarter = xdf_without_unit({0.25F, 0.5F}, {0.75F, 0.5F});
-  EXPECT_THAT(refusal("a.xdf", quarter, {}), HasSubstr("`gaze-unit` fraction"));
+  EXPECT_THAT(refusal("a.xdf", quarter, {}), HasSubstr("`unit` fraction"));
   GazeReadOptions importing;
   importing.accepts_inferred = true;
   const GazeLog fractions = read("a.xdf", quarter, importing);
@@ -258,18 +258,24 @@ TEST_F(GazeFormats, ColumnMapsAreSavedAndReused) {
 TEST_F(GazeFormats, FlagsMendWhatALogGotWrong) {
   const std::string text = "# display_px 1000 1000\nt[ms],x[px],y[px]\n0,0,0\n1,250,100\n";
   GazeReadOptions options;
-  options.zero_is_missing = true;
+  options.missing_value = 0;
   options.swap_xy = true;
   const GazeLog log = read("log.csv", text, options);
   EXPECT_EQ(log.samples[0].validity, GazeValidity::lost);
   EXPECT_EQ(log.samples[1].u, 0.1);
   EXPECT_EQ(log.samples[1].v, 0.25);
+  // The right one of two monitors.
+  GazeReadOptions beside;
+  beside.corner = Vec2d{1000, 0};
+  const GazeLog right = read("log.csv", "# display_px 1000 1000\nt[ms],x[px],y[px]\n0,1100,200\n1,1250,100\n", beside);
+  EXPECT_EQ(right.samples[0].u, 0.1);
+  EXPECT_EQ(right.samples[1].v, 0.1);
   // Also of formats that state their origin themselves.
   GazeReadOptions flipped;
   flipped.columns.origin = PositionOrigin::bottom_left;
   const GazeLog asc_log = read("a.asc", asc("SAMPLES\tGAZE\tLEFT\tRATE\t500", "100\t0\t270\t9\t...\n"), flipped);
   EXPECT_EQ(asc_log.samples[0].v, 0.75);
-  EXPECT_THAT(asc_log.warnings.at(0), HasSubstr("`gaze-origin` bottom-left was given and is used"));
+  EXPECT_THAT(asc_log.warnings.at(0), HasSubstr("`origin` bottom-left was given and is used"));
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ TEST_F(GazeInterpret, LoadingIsTheThreeStepsInTurn) {
   const RawGaze raw_both = read_raw_gaze(files_.write("both.asc", both), options_);
   const std::string text = everything_of(interpret(raw_both, conclude_conventions(raw_both, options_)));
   EXPECT_EQ(text, everything_of(load_gaze_log(files_.path("both.asc"), options_)));
-  EXPECT_THAT(text, HasSubstr("`gaze-origin` bottom-left was given and is used"));
+  EXPECT_THAT(text, HasSubstr("`origin` bottom-left was given and is used"));
   EXPECT_THAT(text, HasSubstr("'diameter'"));
 }
 

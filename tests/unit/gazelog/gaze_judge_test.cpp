@@ -77,8 +77,8 @@ TEST_F(GazeJudge, UnitsOfPsychoPyAreNeverDegreesByGuess) {
   });
   const std::string norm = table("time[s],gaze_x,gaze_y",
                                  [](const Vec2d& p) { return fmt::format("{:.5f},{:.5f}", 2 * p.x - 1, 1 - 2 * p.y); });
-  expect_refused(height, "`gaze-unit` height, norm, deg or rad");
-  expect_refused(norm, "`gaze-unit` norm, deg or rad");
+  expect_refused(height, "`unit` height, norm, deg or rad");
+  expect_refused(norm, "`unit` norm, deg or rad");
   options_.columns.position_unit = PositionUnit::height;
   expect_true(read(height));
   options_.columns.position_unit = PositionUnit::norm;
@@ -92,7 +92,7 @@ TEST_F(GazeJudge, UnitsOfPsychoPyAreNeverDegreesByGuess) {
 TEST_F(GazeJudge, CentredPixels) {
   const std::string text = table(
       "t[s],x,y", [](const Vec2d& p) { return fmt::format("{:.1f},{:.1f}", 1920 * (p.x - 0.5), 1080 * (0.5 - p.y)); });
-  expect_refused(text, "`gaze-origin` center");
+  expect_refused(text, "`origin` center");
   options_.columns.origin = PositionOrigin::center;
   expect_true(read(text));
 }
@@ -104,7 +104,7 @@ TEST_F(GazeJudge, VectorsByTheColumnBesideThem) {
   };
   const std::string fine =
       table("t[s],gaze_x,gaze_y,gaze_z", [&](const Vec2d& p) { return vector(p, "{:.6f},{:.6f},{:.6f}"); });
-  expect_refused(fine, "`gaze-axes` unity, sranipal or cv");
+  expect_refused(fine, "`axes` unity, sranipal or cv");
   options_.columns.axes = GazeAxes::unity;
   const GazeLog log = read(fine);
   EXPECT_EQ(log.kind, GazeKind::direction);
@@ -139,7 +139,7 @@ TEST_F(GazeJudge, ValidityThatIsReadTheWrongWayRound) {
     const Vec2d p = is_lost ? Vec2d{} : place_at(i);
     text += fmt::format("{},{:.1f},{:.1f},{}\n", 8 * i, 1920 * p.x, 1080 * p.y, is_lost ? 1 : 0);
   }
-  expect_refused(text, "`gaze-valid-values` 0");
+  expect_refused(text, "`valid-values` 0");
   options_.columns.valid_values = {"0"};
   EXPECT_NEAR(read(text).samples[5].u, place_at(5).x, 1e-3);
 }
@@ -148,7 +148,7 @@ TEST_F(GazeJudge, ACombinedGazeThatIsTheSumOfTheEyes) {
   const std::string text = table("t[s],GazeXLeft,GazeYLeft,GazeXRight,GazeYRight,GazeX,GazeY", [](const Vec2d& p) {
     return fmt::format("{0:.4f},{1:.4f},{0:.4f},{1:.4f},{2:.4f},{3:.4f}", p.x, p.y, 2 * p.x, 2 * p.y);
   });
-  expect_refused(text, "`gaze-x-column` GazeXLeft `gaze-y-column` GazeYLeft");
+  expect_refused(text, "`x-column` GazeXLeft `y-column` GazeYLeft");
 }
 
 TEST_F(GazeJudge, DisplaySizesOfBlocks) {
@@ -192,13 +192,13 @@ TEST_F(GazeJudge, ClocksThatStartAgainOverflowOrStandTwice) {
   EXPECT_EQ(read(again).samples.size(), 600U);
   options_.recording = "";
   const std::string overflow = rows([](int i) { return std::fmod(60'000 + 8.0 * i, 65'536); });
-  expect_refused(overflow, "`gaze-order` unwrap");
+  expect_refused(overflow, "`order` unwrap");
   options_.unordered = UnorderedPolicy::unwrap;
   const GazeLog unwrapped = read(overflow);
   EXPECT_EQ(unwrapped.samples.back().t_ns - unwrapped.samples.front().t_ns, 1199LL * 8'000'000);
   options_.unordered = UnorderedPolicy::error;
   const std::string pairs = rows([](int i) { return 5000.0 + i / 2; });
-  expect_refused(pairs, "`gaze-order` pairs");
+  expect_refused(pairs, "`order` pairs");
   options_.unordered = UnorderedPolicy::pairs;
   EXPECT_EQ(read(pairs).samples[1].t_ns - read(pairs).samples[0].t_ns, 500'000);
 }
@@ -236,7 +236,7 @@ TEST_F(GazeJudge, PlainFilesStayPlain) {
   expect_true(read(px));
   const std::string fractions =
       table("time,x,y", [](const Vec2d& p) { return fmt::format("{:.5f},{:.5f}", p.x, p.y); });
-  expect_refused(fractions, "`gaze-unit` fraction");
+  expect_refused(fractions, "`unit` fraction");
   options_.accepts_inferred = true;  // the importer takes what only one reading fits
   expect_true(read(fractions));
 }

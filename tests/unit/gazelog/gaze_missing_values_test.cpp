@@ -116,7 +116,7 @@ TEST_F(GazeMissingValues, EyeLinkOfAnotherMark) {
     const GazeInspection report = inspect("a.asc", text);
     const GazeFinding* const found = finding(report, "missing-value");
     ASSERT_NE(found, nullptr) << corners;
-    EXPECT_EQ(found->setting, "`gaze-missing-value` -1");
+    EXPECT_EQ(found->setting, "`missing-value` -1");
     options.missing_value = -1;
     EXPECT_EQ(lost_rows(read("a.asc", text, options)), 10) << corners;
     EXPECT_EQ(finding(inspect("a.asc", text, options), "missing-value"), nullptr);
@@ -127,16 +127,16 @@ TEST_F(GazeMissingValues, TheDoctorNamesAMarkBesideTheDisplay) {
   const GazeInspection report = inspect("a.csv", with_marks("-1,-1"), full_hd());
   const GazeFinding* const found = finding(report, "missing-value");
   ASSERT_NE(found, nullptr);
-  EXPECT_EQ(found->setting, "`gaze-missing-value` -1");
+  EXPECT_EQ(found->setting, "`missing-value` -1");
   EXPECT_THAT(found->what, HasSubstr("100 of 1000 rows are exactly at (-1, -1)"));
-  EXPECT_THAT(report.verdict, HasSubstr("`gaze-missing-value` -1 mends it"));
+  EXPECT_THAT(report.verdict, HasSubstr("`missing-value` -1 mends it"));
   // One axis is enough, where no place on the display has this number.
   for (const auto& [cells, place, mark] :
        {std::tuple("-9999,-1", "(-9999, -1)", -9999), std::tuple("-1,500", "(-1, 500)", -1)}) {
     const std::string text = with_marks(cells);
     const GazeInspection unequal = inspect("b.csv", text, full_hd());
     ASSERT_NE(finding(unequal, "missing-value"), nullptr) << cells;
-    EXPECT_EQ(finding(unequal, "missing-value")->setting, fmt::format("`gaze-missing-value` {}", mark));
+    EXPECT_EQ(finding(unequal, "missing-value")->setting, fmt::format("`missing-value` {}", mark));
     EXPECT_THAT(finding(unequal, "missing-value")->what, HasSubstr(place));
     GazeReadOptions options = full_hd();
     options.missing_value = mark;
@@ -145,7 +145,7 @@ TEST_F(GazeMissingValues, TheDoctorNamesAMarkBesideTheDisplay) {
   // Of two the one with more rows.
   const GazeInspection two = inspect("c.csv", with_marks("-1,-1", "-9,-9"), full_hd());
   ASSERT_NE(finding(two, "missing-value"), nullptr);
-  EXPECT_EQ(finding(two, "missing-value")->setting, "`gaze-missing-value` -1");
+  EXPECT_EQ(finding(two, "missing-value")->setting, "`missing-value` -1");
 }
 
 // Whole pixels repeat in a fixation beside the display; they are come to by small steps.
@@ -224,7 +224,7 @@ TEST_F(GazeMissingValues, TheDoctorNamesAMarkWhereGazeIs) {
     const GazeInspection report = inspect("a.csv", text, options);
     const GazeFinding* const found = finding(report, "missing-value");
     ASSERT_NE(found, nullptr);
-    EXPECT_EQ(found->setting, "`gaze-missing-value` -1");
+    EXPECT_EQ(found->setting, "`missing-value` -1");
     EXPECT_THAT(found->what, HasSubstr("400 of 4000 rows are exactly at (-1, -1)"));
   }
 }
@@ -240,7 +240,7 @@ TEST_F(GazeMissingValues, TheDoctorNamesAMarkOfDirections) {
   const GazeInspection report = inspect("a.csv", fixations_with_marks(header, "-1,-1,-1", vector));
   const GazeFinding* const found = finding(report, "missing-value");
   ASSERT_NE(found, nullptr);
-  EXPECT_EQ(found->setting, "`gaze-missing-value` -1");
+  EXPECT_EQ(found->setting, "`missing-value` -1");
   EXPECT_THAT(found->what, HasSubstr("at (-1, -1, -1)"));
   const GazeInspection ahead = inspect("b.csv", fixations_with_marks(header, "0,0,-1", vector));
   ASSERT_NE(finding(ahead, "missing-value"), nullptr);

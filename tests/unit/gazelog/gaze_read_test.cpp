@@ -93,7 +93,7 @@ TEST_F(GazeRead, DirectionsAreNormalized) {
 TEST_F(GazeRead, BackwardDirectionsAreRefused) {
   EXPECT_THAT([&] { read("t[s],dx,dy,dz\n0,0,0,1\n1,0.6,0,0.8\n"); },
               ThrowsMessage<Error>(AllOf(HasSubstr("2 of 2 directions point backwards"),
-                                         HasSubstr("log.csv -o gaze.csv `gaze-axes` unity"))));
+                                         HasSubstr("log.csv -o gaze.csv `axes` unity"))));
   GazeReadOptions options;
   options.columns.axes = GazeAxes::unity;
   EXPECT_EQ(read("t[s],dx,dy,dz\n0,0,0,1\n1,0.6,0,0.8\n", options).samples[1].direction, (Vec3d{0.6, 0, -0.8}));
@@ -158,10 +158,9 @@ TEST_F(GazeRead, FlagsContradictingTheHeaderWarnAndWin) {
   const GazeLog log = read("t[ms],x[px],y[px]\n7,0.5,0.25\n", options);
   EXPECT_EQ(log.samples[0].t_ns, 7000);
   EXPECT_EQ(log.samples[0].u, 0.5);
-  EXPECT_THAT(
-      warnings(log),
-      ElementsAre("log.csv:1: the header says that 't[ms]' is in ms; `gaze-time-unit` us was given and is used",
-                  "log.csv:1: the header says that 'x[px]' is in px; `gaze-unit` fraction was given and is used"));
+  EXPECT_THAT(warnings(log),
+              ElementsAre("log.csv:1: the header says that 't[ms]' is in ms; `time-unit` us was given and is used",
+                          "log.csv:1: the header says that 'x[px]' is in px; `unit` fraction was given and is used"));
 }
 
 TEST_F(GazeRead, UnitsFromStatisticsAreInferredByTheImporterAlone) {
@@ -180,13 +179,13 @@ TEST_F(GazeRead, UnitsFromStatisticsAreInferredByTheImporterAlone) {
   for (const Case& c : {Case{4, "ms", 4'000'000}, Case{8.33, "ms", 8'330'000}, Case{0.004, "s", 4'000'000},
                         Case{3333, "us", 3'333'000}, Case{3'333'000, "ns", 3'333'000}}) {
     EXPECT_THAT([&] { read(table(c.step, 1)); },
-                ThrowsMessage<Error>(HasSubstr("log.csv -o gaze.csv `gaze-unit` fraction")));
+                ThrowsMessage<Error>(HasSubstr("log.csv -o gaze.csv `unit` fraction")));
     GazeReadOptions importing;
     importing.accepts_inferred = true;
     const GazeLog log = read(table(c.step, 1), importing);
     EXPECT_EQ(log.samples[1].t_ns - log.samples[0].t_ns, c.step_ns);
     EXPECT_THAT(warnings(log)[0], fmt::format("log.csv:1: guessed from its steps that 'time' is in {}; state it with "
-                                              "`gaze-time-unit`",
+                                              "`time-unit`",
                                               c.unit));
     EXPECT_EQ(log.conventions.unit.value, PositionUnit::fraction);
     EXPECT_EQ(log.conventions.unit.evidence, Evidence::statistics);
@@ -202,7 +201,7 @@ TEST_F(GazeRead, UnitsFromStatisticsAreInferredByTheImporterAlone) {
 TEST_F(GazeRead, SuspiciousValuesAreNamed) {
   GazeReadOptions options = full_hd();
   EXPECT_THAT([&] { read("t[s],x[px],y[px]\n0,-300,200\n1,200,-80\n2,10,20\n", options); },
-              ThrowsMessage<Error>(AllOf(HasSubstr("67 % of them are negative"), HasSubstr("`gaze-origin` center"))));
+              ThrowsMessage<Error>(AllOf(HasSubstr("67 % of them are negative"), HasSubstr("`origin` center"))));
   EXPECT_THAT(
       warnings(read("t[s],x[px],y[px]\n0,0,0\n1,200,80\n2,10,20\n", options)),
       ElementsAre("log.csv: 1 of 3 positions are exactly (0, 0): missing values written as zero? Name a validity "
@@ -244,10 +243,9 @@ TEST_F(GazeRead, ValidityColumns) {
   options.columns.valid_values = {"0"};
   EXPECT_EQ(read("n_ms,val,u,v,time_ms\n0,0,.5,.5,0\n1,4,.5,.5,1\n", options).samples[0].validity, GazeValidity::ok);
   options.columns.valid_values.clear();
-  EXPECT_THAT(
-      warnings(read("val,u,v,time_ms\n0,.5,.5,0\n4,.5,.5,1\n", options))[0],
-      "log.csv: no row is valid by column 'val', which holds: 0, 4; say with `gaze-valid-values` which of them are "
-      "good");
+  EXPECT_THAT(warnings(read("val,u,v,time_ms\n0,.5,.5,0\n4,.5,.5,1\n", options))[0],
+              "log.csv: no row is valid by column 'val', which holds: 0, 4; say with `valid-values` which of them are "
+              "good");
 }
 
 TEST_F(GazeRead, TextOfEveryManner) {

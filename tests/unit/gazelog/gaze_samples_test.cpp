@@ -204,7 +204,7 @@ TEST(GazeSamples, TobiiGlasses2) {
   SKIP_WITHOUT("tobii-glasses2/livedata.json.gz");
   const std::string path = sample("tobii-glasses2/livedata.json.gz");
   EXPECT_THAT(refusal(path), HasSubstr("scene camera"));
-  EXPECT_THAT(refusal(path), HasSubstr("`gaze-frame` head"));
+  EXPECT_THAT(refusal(path), HasSubstr("`frame` head"));
   const GazeLog scene = load_gaze_log(path, in_frame(GazeFrame::scene_camera));
   EXPECT_EQ(scene.kind, GazeKind::scene_camera);
   expect_span(scene, "tobii-glasses-2", 965, 84'415'010'000, 104'203'559'000);
@@ -232,7 +232,7 @@ TEST(GazeSamples, TobiiGlasses2) {
 TEST(GazeSamples, TobiiGlasses3) {
   SKIP_WITHOUT("tobii-glasses3/gazedata.gz");
   const std::string path = sample("tobii-glasses3/gazedata.gz");
-  EXPECT_THAT(refusal(path), HasSubstr("`gaze-frame` head"));
+  EXPECT_THAT(refusal(path), HasSubstr("`frame` head"));
   const GazeLog scene = load_gaze_log(path, in_frame(GazeFrame::scene_camera));
   expect_span(scene, "tobii-glasses-3", 6547, 6'684'000, 65'585'314'000);
   EXPECT_EQ(count(scene, GazeValidity::lost), 412U);
@@ -452,7 +452,7 @@ TEST(GazeSamples, GazeBaseVrInDegrees) {
 
 TEST(GazeSamples, PlainCsvCanBeLookedAtWithoutItsDisplay) {
   SKIP_WITHOUT("plain-csv/gaze-toy-example.csv");
-  EXPECT_THAT(refusal(sample("plain-csv/gaze-toy-example.csv")), HasSubstr("`gaze-unit` px `screen-px` W,H"));
+  EXPECT_THAT(refusal(sample("plain-csv/gaze-toy-example.csv")), HasSubstr("`unit` px `screen-px` W,H"));
   GazeReadOptions options;
   options.guess_display = true;
   const GazeLog log = load_gaze_log(sample("plain-csv/gaze-toy-example.csv"), options);

@@ -23,7 +23,7 @@ TEST_F(GazeTraps, AFileOfAnotherFormatIsToldWhatItLooksLike) {
   GazeReadOptions options;
   for (const std::string format : {"eyelink-asc", "arff", "xdf", "tobii-glasses-3", "smi"}) {
     options.format = format;
-    EXPECT_THAT(refusal("log.tsv", lab, options), HasSubstr("it looks like `gaze-format` tobii-pro-lab")) << format;
+    EXPECT_THAT(refusal("log.tsv", lab, options), HasSubstr("it looks like `format` tobii-pro-lab")) << format;
   }
   // A broken file of the named format is only broken.
   options.format = "tobii-pro-lab";

@@ -44,16 +44,15 @@ class GazeUnitDoubts : public GazeFormats {
 };
 
 TEST_F(GazeUnitDoubts, PixelsAreNoOtherUnit) {
-  expect_setting(all_over("deg", 0, 0, 1920, 1080), "no degrees but pixels", "`gaze-unit` px");
-  expect_setting(all_over("mm", 0, 0, 1920, 1080), "no millimetres but pixels", "`gaze-unit` px");
-  expect_setting(all_over("cm", 0, 0, 1920, 1080), "no centimetres but pixels", "`gaze-unit` px");
-  expect_setting(all_over("deg", -960, -540, 1920, 1080), "no degrees but pixels",
-                 "`gaze-unit` px `gaze-origin` center");
+  expect_setting(all_over("deg", 0, 0, 1920, 1080), "no degrees but pixels", "`unit` px");
+  expect_setting(all_over("mm", 0, 0, 1920, 1080), "no millimetres but pixels", "`unit` px");
+  expect_setting(all_over("cm", 0, 0, 1920, 1080), "no centimetres but pixels", "`unit` px");
+  expect_setting(all_over("deg", -960, -540, 1920, 1080), "no degrees but pixels", "`unit` px `origin` center");
 }
 
 TEST_F(GazeUnitDoubts, AFewRowsTellPixelsFromFractions) {
   expect_setting("# display_px 1920 1080\nt[ms],u,v\n0,960,540\n10,964,541\n20,955,538\n",
-                 "no fractions of the display but pixels", "`gaze-unit` px");
+                 "no fractions of the display but pixels", "`unit` px");
   for (const std::string_view text :
        {// Beside the display, a mark among places, and both sides of the corner: nothing that three rows could tell.
         "t[ms],u,v\n0,1.3,0.5\n10,-0.4,2.1\n20,1.2,0.6\n", "t[ms],u,v\n0,0.5,0.5\n10,0.51,0.5\n20,-100,-100\n",
@@ -66,9 +65,9 @@ TEST_F(GazeUnitDoubts, AFewRowsTellPixelsFromFractions) {
 }
 
 TEST_F(GazeUnitDoubts, MillimetresAreNoCentimetresAndFractionsNeither) {
-  expect_setting(all_over("cm", 0, 0, 530, 300), "no centimetres but millimetres", "`gaze-unit` mm");
-  expect_setting(all_over("cm", 0, 0, 1, 1), "no centimetres but fractions", "`gaze-unit` fraction");
-  expect_setting(all_over("mm", 0, 0, 1, 1), "no millimetres but fractions", "`gaze-unit` fraction");
+  expect_setting(all_over("cm", 0, 0, 530, 300), "no centimetres but millimetres", "`unit` mm");
+  expect_setting(all_over("cm", 0, 0, 1, 1), "no centimetres but fractions", "`unit` fraction");
+  expect_setting(all_over("mm", 0, 0, 1, 1), "no millimetres but fractions", "`unit` fraction");
 }
 
 TEST_F(GazeUnitDoubts, WhatIsStatedIsBelieved) {

@@ -265,7 +265,7 @@ TEST_F(Resolve, PixelsThatALogCallsFractionsAreTold) {
   };
   EXPECT_THAT(warnings_of("0,955,538\n10000000,964,541\n20000000,0.5,-0.1\n"),
               AllOf(HasSubstr("places.csv: the positions are no fractions of the display but pixels"),
-                    HasSubstr("give `gaze-unit` px")));
+                    HasSubstr("give `unit` px")));
   // Beside the screen, and one mark of a missing value.
   EXPECT_THAT(warnings_of("0,1.2,0.5\n10000000,-0.4,2\n20000000,-100,-100\n"), Not(HasSubstr("but pixels")));
   EXPECT_THAT(fmt::format("{}", fmt::join(resolve(job_).warnings, "\n")), Not(HasSubstr("but pixels")));

@@ -119,7 +119,7 @@ Command add_gaze_events_command(CLI::App& app, const Invocation& /*invocation*/)
   schema.flag("--binocular", &EventsArguments::binocular,
               "Of a log of both eyes: the events of the left eye, of whose saccades and microsaccades only those stay "
               "that overlap one of the right eye (Engbert & Kliegl 2003)");
-  schema.include(gaze_file_schema(), &EventsArguments::gaze);
+  schema.include(gaze_choice_schema(), &EventsArguments::gaze);
   schema.include(screen_schema(), &EventsArguments::screen);
   schema.include(gaze_process_schema().with_headings([](const Option&) { return "Processing"; }),
                  &EventsArguments::steps);

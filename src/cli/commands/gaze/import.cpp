@@ -149,7 +149,7 @@ int run_import(const ImportArguments& arguments) {
 Command add_gaze_import_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<ImportArguments>();
   OptionSchema<ImportArguments> schema;
-  schema.include(gaze_file_schema(), &ImportArguments::gaze);
+  schema.include(gaze_import_schema(), &ImportArguments::gaze);
   schema.include(screen_schema(), &ImportArguments::screen);
   schema.include(gaze_process_schema().with_headings([](const Option&) { return "Processing"; }),
                  &ImportArguments::steps);

@@ -36,8 +36,9 @@ int run_inspect(const InspectArguments& arguments) {
     check_output_file(arguments.save_columns, arguments.overwrite);
   }
   GazeUnderInspection gaze = load_for_inspection(arguments.gaze.path, read_options(arguments.gaze, arguments.screen));
-  if (!arguments.gaze.trials.trial.empty()) {
-    gaze.log = chosen_trial(std::move(gaze.log), arguments.gaze.trials);
+  name_trials(gaze.log, arguments.gaze.trial_rules);
+  if (!arguments.gaze.trial.empty()) {
+    gaze.log = chosen_trial(std::move(gaze.log), arguments.gaze.trial);
     cut_rows(gaze.raw, *gaze.log.trial);
   }
   GazeInspectOptions options;
@@ -57,7 +58,7 @@ int run_inspect(const InspectArguments& arguments) {
 Command add_gaze_inspect_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<InspectArguments>();
   OptionSchema<InspectArguments> schema;
-  schema.include(gaze_file_schema(), &InspectArguments::gaze);
+  schema.include(gaze_import_schema(), &InspectArguments::gaze);
   schema.include(screen_schema(), &InspectArguments::screen);
   const auto options = std::make_shared<CommandOptions<InspectArguments>>(std::move(schema));
   options->bind(app, *arguments);

@@ -46,7 +46,6 @@ int run_gaze_measure(const MeasureArguments& arguments) {
   log.warnings = with_flags(std::move(log.warnings));  // they are shown to the program's users
   GazeMeasureSettings settings = arguments.measure;
   settings.steps = gaze_steps_of(arguments.steps);
-  settings.trials = arguments.gaze.trials;
   const GazeMeasurements measured = measure_gaze(log, settings);
   print_warnings(measured.warnings);
   if (!arguments.folder.empty()) {
@@ -79,7 +78,7 @@ Command add_gaze_measure_command(CLI::App& app, const Invocation& /*invocation*/
       "A method with its published constants ('gazetrace list event-methods'), or log; auto: as 'gaze events'");
   schema.value("--device", at(&MeasureArguments::measure, &GazeMeasureSettings::device), "desktop|head-mounted",
                "What it was recorded on, where places or directions do not tell");
-  schema.include(gaze_file_schema(), &MeasureArguments::gaze);
+  schema.include(gaze_choice_schema(), &MeasureArguments::gaze);
   schema.include(screen_schema(), &MeasureArguments::screen);
   schema.include(gaze_process_schema().with_headings([](const Option&) { return "Processing"; }),
                  &MeasureArguments::steps);

@@ -84,12 +84,12 @@ std::string as_table(const std::vector<TrialRow>& rows, const FrameRate& fps, st
 
 int run_trials(const TrialsArguments& arguments) {
   GazeFileSettings whole = arguments.gaze;
-  whole.trials.trial.clear();
+  whole.trial.clear();
   GazeLog log = read_gaze_file(whole, arguments.screen);
   print_warnings(log.warnings);
-  std::vector<GazeTrial> trials = find_trials(log, arguments.gaze.trials);
-  if (!arguments.gaze.trials.trial.empty()) {
-    trials = {trial_by_name(trials, arguments.gaze.trials.trial)};
+  std::vector<GazeTrial> trials = find_trials(log);
+  if (!arguments.gaze.trial.empty()) {
+    trials = {trial_by_name(trials, arguments.gaze.trial)};
   }
   std::vector<TrialRow> rows;
   for (const GazeTrial& trial : trials) {
@@ -114,7 +114,7 @@ int run_trials(const TrialsArguments& arguments) {
 Command add_gaze_trials_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<TrialsArguments>();
   OptionSchema<TrialsArguments> schema;
-  schema.include(gaze_file_schema(), &TrialsArguments::gaze);
+  schema.include(gaze_choice_schema(), &TrialsArguments::gaze);
   schema.include(screen_schema(), &TrialsArguments::screen);
   schema.group("Frames");
   schema.value("--fps", &TrialsArguments::fps, "N|N/D", "Frames a second, for the number of frames of each");
