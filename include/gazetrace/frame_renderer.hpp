@@ -102,6 +102,7 @@ struct WindowFrame {
   FrameRequest request;
   TracedFrame traced;
   PixelHits hits;
+  std::vector<std::uint8_t> glossy;  // of each site: 1 where it saw a glossy surface
 };
 
 class FrameRenderer {

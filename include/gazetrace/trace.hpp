@@ -275,7 +275,7 @@ class PosedScene {
 
   // What the pixels' centres see in this pose, which is that of `view`'s time.
   [[nodiscard]] PixelHits pixel_hits(const OtherView& view, int width_px, int height_px) const;
-  // Where that is in another view. It costs least in a pose of either view's time.
+  // Where that is in another view. It costs least in a pose of either view's time. Keeps a reference to `seen`.
   [[nodiscard]] HitPlaces places_of(const PixelHits& seen, const OtherView& other) const;
 
  private:

@@ -22,16 +22,6 @@ PixelProjection::PixelProjection(const Camera& camera, int width_px, int height_
   step_ = 2 * half_height / height_px;
 }
 
-PixelProjection::Place PixelProjection::point(const Vec3d& p) const {
-  const Vec3d way = p - origin_;
-  const double depth = dot(way, forward_);
-  const double scale = perspective_ ? step_ * depth : step_;
-  if (perspective_ && !(depth > 0)) {
-    return {{kNowhere, kNowhere}, depth};
-  }
-  return {{center_px_.x + dot(way, right_) / scale, center_px_.y - dot(way, up_) / scale}, depth};
-}
-
 Vec2d PixelProjection::direction(const Vec3d& d) const {
   const double along = dot(d, forward_);
   if (!perspective_ || !(along > 0)) {

@@ -111,11 +111,12 @@ bool FrameRenderer::at_rest(const FrameRequest& a, const FrameRequest& b) const 
 }
 
 WindowFrame FrameRenderer::window_frame(const FrameRequest& request, KnownLight& known) const {
-  WindowFrame frame{request, trace(request, known), {}};
+  WindowFrame frame{request, trace(request, known), {}, {}};
   frame.hits = timed(frame.traced.times.temporal_ms, [&] {
     return tracer_->at(shutter_of(request))
         .pixel_hits({request.camera, request.t_video_ns}, request.width_px, request.height_px);
   });
+  frame.glossy = timed(frame.traced.times.temporal_ms, [&] { return glossy_sites(frame.traced.sparse); });
   return frame;
 }
 
@@ -126,7 +127,7 @@ RenderedFrame FrameRenderer::finish(const std::vector<const WindowFrame*>& windo
     return finish(request, frame.traced);  // traced without the surfaces by which frames join
   }
   const auto samples_of = [](const WindowFrame& one) {
-    return WindowSamples{one.request.frame, &one.request.camera, &one.traced.map, &one.traced.sparse};
+    return WindowSamples{one.request.frame, &one.request.camera, &one.traced.map, &one.traced.sparse, &one.glossy};
   };
   TracedFrame itself;
   itself.map = frame.traced.map;

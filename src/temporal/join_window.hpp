@@ -12,6 +12,7 @@
 #include "gazetrace/motion.hpp"
 #include "gazetrace/trace.hpp"
 #include "temporal/light_changes.hpp"
+#include "temporal/site_adder.hpp"
 
 namespace gazetrace {
 
@@ -20,8 +21,12 @@ struct WindowSamples {
   std::int32_t frame = 1;
   const Camera* camera = nullptr;
   const SamplingMap* map = nullptr;
-  const SparseFrame* sparse = nullptr;  // with surfaces
+  const SparseFrame* sparse = nullptr;                // with surfaces
+  const std::vector<std::uint8_t>* glossy = nullptr;  // glossy_sites()
 };
+
+// Of each site, 1 where it saw a glossy surface.
+std::vector<std::uint8_t> glossy_sites(const SparseFrame& sparse);
 
 struct JoinedSamples {
   SamplingMap map;  // that of the frame, with the samples of all; its tiles and regions count the frame's own
@@ -43,12 +48,12 @@ struct JoinedSamples {
 // of the frames with odd and with even numbers, where there are both: each has a scrambling of its own.
 class WindowJoin {
  public:
-  // `places`: what the frame's pixels see, in its own view. Keeps references to all.
+  // `places`: what the frame's pixels see, in its own view. Keeps references to what `own` names.
   WindowJoin(const WindowSamples& own, const HitPlaces& places, bool light_changes, int threads);
   WindowJoin(const WindowJoin&) = delete;
   WindowJoin& operator=(const WindowJoin&) = delete;
 
-  // Another frame of the same size, in ascending order of frames. `places`: what its pixels see, in the frame's view.
+  // Another frame of the same size. `places`: what its pixels see, in the frame's view.
   void add(const WindowSamples& other, const HitPlaces& places);
 
   // Without stats.
@@ -60,29 +65,37 @@ class WindowJoin {
   static constexpr float kSameMirroredView = 0.99999F;  // cosine of a quarter of a degree
 
  private:
+  // Of a pixel of the frame: its site, and what it sees.
+  struct Seen {
+    Vec3f position_m;  // as HitPlace
+    std::uint32_t object = 0, site = 0;
+    std::uint16_t block_px = 1;  // of its site's region
+    bool mirrors = false;
+  };
   struct Added {
     WindowSamples samples;
     std::vector<std::uint32_t> target;       // the frame's site that each site joins, or kNoSite
-    std::vector<Vec3f> moved_m;              // from one camera to the other, and by motion in the scene
-    std::vector<std::uint8_t> glossy;        // whether a site saw a glossy surface
+    Vec3f camera_m;                          // from one camera to the other
+    std::vector<Vec3f> moved_m;              // the same of each site, with its motion in the scene; empty: none moves
     std::vector<std::uint32_t> first, last;  // of each tile's targets
   };
+  // For the two kinds of surfaces, diffuse and glossy, the frames in whose light each block is; empty: all of them.
+  struct SameLight {
+    std::array<std::vector<FrameRange>, 2> ranges;
+    std::vector<std::uint32_t> block;  // of each site
+  };
   struct Part;
-  class SiteAdder;
 
-  [[nodiscard]] bool joins(const WindowSamples& other, const HitPlaces& places, std::size_t site, std::size_t seen,
-                           std::size_t pixel) const;
-  [[nodiscard]] Part part_of(std::size_t part) const;
-  void index_tiles(Added& added) const;
-  template <class BlockOf>
-  [[nodiscard]] std::array<std::vector<FrameRange>, 2> find_same_light(std::size_t own, const BlockOf& block_of) const;
+  [[nodiscard]] bool joins(const WindowSamples& other, const Vec3f& to_own, const HitPlace& place, const Seen& seen,
+                           std::size_t site) const;
+  [[nodiscard]] Part part_of(std::size_t part, std::size_t own, const SameLight& light) const;
+  [[nodiscard]] SameLight find_same_light(std::size_t own) const;
 
   WindowSamples own_;
-  const HitPlaces& places_;
   bool light_changes_, views_differ_ = false;
   int threads_;
-  Image<std::uint32_t> site_of_pixel_;
-  std::vector<Added> added_;  // with the frame itself
+  std::vector<Seen> seen_;
+  std::vector<Added> added_;  // in ascending order of frames, with the frame itself
 };
 
 }  // namespace gazetrace

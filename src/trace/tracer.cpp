@@ -32,6 +32,7 @@ struct PathTracer::Impl {
     is_posed = true;
   }
 
+  [[nodiscard]] bool moves() const { return !(scene->motions.empty() && scene->deformations.empty()); }
   [[nodiscard]] const NamedKernel& kernel_variant() const { return choose_kernel(render_scene, options.all_features); }
 
   const Scene* scene;
@@ -49,7 +50,7 @@ PathTracer::PathTracer(PathTracer&&) noexcept = default;
 PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 
 bool PathTracer::moves() const {
-  return !(impl_->scene->motions.empty() && impl_->scene->deformations.empty());
+  return impl_->moves();
 }
 
 PosedScene PathTracer::at(const ShutterTimes& times) {
@@ -119,7 +120,7 @@ SurfaceMotion PosedScene::surface_motion(const Camera& camera, int width_px, int
 
 PixelHits PosedScene::pixel_hits(const OtherView& view, int width_px, int height_px) const {
   tracer_->pose(times_);
-  return trace_pixel_hits(tracer_->render_scene, view, width_px, height_px, tracer_->options.threads);
+  return trace_pixel_hits(tracer_->render_scene, view, width_px, height_px, tracer_->moves(), tracer_->options.threads);
 }
 
 HitPlaces PosedScene::places_of(const PixelHits& seen, const OtherView& other) const {

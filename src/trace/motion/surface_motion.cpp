@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/hash.hpp"
@@ -84,11 +85,6 @@ class HitFollower {
   [[nodiscard]] const PixelProjection& view() const { return view_; }
   // Whether what was hit is where it is in the pose of the tracer.
   [[nodiscard]] bool stays(const PixelHit& hit) const { return hit.instance == kNoId || !poses_[hit.instance].moved; }
-  [[nodiscard]] std::uint32_t object(const PixelHit& hit) const {
-    const std::uint32_t of_instance =
-        hit.instance == kNoId ? kNoId : render_scene_.instances[hit.instance].scene_instance;
-    return 1 + (of_instance == kNoId ? render_scene_.geometries[hit.geometry].scene_instance : of_instance);
-  }
 
   // The corners of the triangle in world space, in double: in the pose of the tracer, and at the other time.
   [[nodiscard]] Corners corners_of(const PixelHit& hit) const {
@@ -140,6 +136,11 @@ Vec3d point_of(const RenderScene& scene, const PixelHit& hit) {
                          point);
 }
 
+std::uint32_t object_of(const RenderScene& scene, const PixelHit& hit) {
+  const std::uint32_t of_instance = hit.instance == kNoId ? kNoId : scene.instances[hit.instance].scene_instance;
+  return 1 + (of_instance == kNoId ? scene.geometries[hit.geometry].scene_instance : of_instance);
+}
+
 bool mirrors(const RenderScene& scene, const PixelHit& hit) {
   const ShadingTriangle& triangle = scene.triangles[scene.geometries[hit.geometry].first_triangle + hit.primitive];
   const std::uint32_t material = triangle.material_and_sign >> 1U;
@@ -183,14 +184,15 @@ void trace_tile(const RenderScene& scene, const CameraRays& rays, int x0, int y0
     const auto [dx, dy] = place_on_curve(i);
     const int x = x0 + dx;
     const int y = y0 + dy;
-    if (x >= out.hits.width_px || y >= out.hits.height_px) {
+    if (x >= out.sights.width_px || y >= out.sights.height_px) {
       continue;
     }
     // The same in every frame, so that a blended surface does not flicker.
     const auto alpha_key = static_cast<std::uint32_t>(
         hash64(kPlaceKey ^ (static_cast<std::uint64_t>(y) << 32U | static_cast<std::uint64_t>(x))));
-    work.pixel[count] = out.hits.index(x, y);
-    put_camera_ray(ray_of(rays, work.pixel[count], out.hits.width_px, out.hits.height_px), alpha_key, count, work.rays);
+    work.pixel[count] = out.sights.index(x, y);
+    put_camera_ray(ray_of(rays, work.pixel[count], out.sights.width_px, out.sights.height_px), alpha_key, count,
+                   work.rays);
     ++count;
   }
   scene.rays->intersect(work.rays, static_cast<int>(count), RayShape::coherent_packet, work.hits);
@@ -199,14 +201,16 @@ void trace_tile(const RenderScene& scene, const CameraRays& rays, int x0, int y0
     if (hits.geometry[k] == kNoId || hits.geometry[k] == kRejected) {
       continue;
     }
-    PixelHit hit{kNoId, hits.geometry[k], hits.primitive[k], hits.u[k], hits.v[k], false};
+    PixelHit hit{kNoId, hits.geometry[k], hits.primitive[k], hits.u[k], hits.v[k]};
     if (hits.instance[k] != kNoId) {
       hit.instance = hits.instance[k] - scene.first_instance_id;
       hit.geometry += scene.instances[hit.instance].first_geometry;
     }
-    hit.mirrors = mirrors(scene, hit);
-    out.hits.pixels[work.pixel[k]] = hit;
-    out.position_m.pixels[work.pixel[k]] = to_float(point_of(scene, hit) - out.view.camera.pose.position_m);
+    if (!out.hits.empty()) {
+      out.hits.pixels[work.pixel[k]] = hit;
+    }
+    out.sights.pixels[work.pixel[k]] = {to_float(point_of(scene, hit) - out.view.camera.pose.position_m),
+                                        object_of(scene, hit), true, mirrors(scene, hit)};
   }
 }
 
@@ -223,9 +227,12 @@ void for_each_pixel_of(int width_px, int height_px, int threads, const Visit& vi
 
 }  // namespace
 
-PixelHits trace_pixel_hits(const RenderScene& scene, const OtherView& view, int width_px, int height_px, int threads) {
-  PixelHits out{view, Image<PixelHit>(width_px, height_px, {kNoId, kNoId, 0, 0, 0, false}),
-                ImageRgb(width_px, height_px)};
+PixelHits trace_pixel_hits(const RenderScene& scene, const OtherView& view, int width_px, int height_px,
+                           bool with_triangles, int threads) {
+  PixelHits out{view, Image<PixelSight>(width_px, height_px), {}};
+  if (with_triangles) {
+    out.hits = Image<PixelHit>(width_px, height_px, {kNoId, kNoId, 0, 0, 0});
+  }
   const CameraRays rays(view.camera, height_px);
   const int rows = (height_px + kTilePx - 1) / kTilePx;
   parallel_for(static_cast<std::size_t>(rows), threads, [&](std::size_t row) {
@@ -238,32 +245,50 @@ PixelHits trace_pixel_hits(const RenderScene& scene, const OtherView& view, int 
   return out;
 }
 
+struct HitPlaces::Impl {
+  const PixelHits& seen;
+  OtherView other;
+  HitFollower then, before;  // at the other time, and when the pixels saw it
+  CameraRays rays;
+  bool same, moves;  // the view; anything in the scene from the one time to the other
+};
+
+HitPlaces::HitPlaces(std::unique_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+HitPlaces::~HitPlaces() = default;
+HitPlaces::HitPlaces(HitPlaces&&) noexcept = default;
+HitPlaces& HitPlaces::operator=(HitPlaces&&) noexcept = default;
+
+HitPlace HitPlaces::at(std::size_t pixel) const {
+  const PixelHits& seen = impl_->seen;
+  const OtherView& other = impl_->other;
+  const PixelSight& sight = seen.sights.pixels[pixel];
+  HitPlace out;
+  if (!sight.is_hit) {
+    out.px = place_of_miss(impl_->then, impl_->rays, pixel, seen.view.camera, other.camera, seen.sights.width_px,
+                           seen.sights.height_px);
+    return out;
+  }
+  const Vec3d before = seen.view.camera.pose.position_m + to_double(sight.position_m);
+  const PixelHit* const hit = impl_->moves ? &seen.hits.pixels[pixel] : nullptr;
+  const bool still = hit == nullptr || (impl_->then.stays(*hit) && impl_->before.stays(*hit));
+  const Vec3d then = still ? before : point_on(impl_->then.corners_of(*hit).then, *hit);
+  out.object = sight.object;
+  out.mirrors = sight.mirrors;
+  out.px = still && impl_->same ? center_of(pixel, seen.sights.width_px) : impl_->then.view().point(then).px;
+  out.position_m = to_float(then - other.camera.pose.position_m);
+  out.moved_m = to_float(then - before);
+  return out;
+}
+
 HitPlaces places_of_hits(const Scene& scene, const RenderScene& render_scene, const PixelHits& seen,
                          const OtherView& other, int threads) {
-  const int width_px = seen.hits.width_px;
-  const int height_px = seen.hits.height_px;
-  HitPlaces out{Image<std::uint32_t>(width_px, height_px), Image<Vec2d>(width_px, height_px),
-                ImageRgb(width_px, height_px), ImageRgb(width_px, height_px), Image<std::uint8_t>(width_px, height_px)};
-  const HitFollower follower(scene, render_scene, other, width_px, height_px, true, threads);
-  const HitFollower seen_at(scene, render_scene, seen.view, width_px, height_px, false, threads);
-  const CameraRays rays(seen.view.camera, height_px);
-  const bool same = same_view(seen.view.camera, other.camera);
-  for_each_pixel_of(width_px, height_px, threads, [&](std::size_t pixel) {
-    const PixelHit& hit = seen.hits.pixels[pixel];
-    if (hit.geometry == kNoId) {
-      out.px.pixels[pixel] = place_of_miss(follower, rays, pixel, seen.view.camera, other.camera, width_px, height_px);
-      return;
-    }
-    const Vec3d before = seen.view.camera.pose.position_m + to_double(seen.position_m.pixels[pixel]);
-    const bool still = seen.view.t_video_ns == other.t_video_ns || (follower.stays(hit) && seen_at.stays(hit));
-    const Vec3d then = still ? before : point_on(follower.corners_of(hit).then, hit);
-    out.object.pixels[pixel] = follower.object(hit);
-    out.mirrors.pixels[pixel] = hit.mirrors ? 1 : 0;
-    out.px.pixels[pixel] = still && same ? center_of(pixel, width_px) : follower.view().point(then).px;
-    out.position_m.pixels[pixel] = to_float(then - other.camera.pose.position_m);
-    out.moved_m.pixels[pixel] = to_float(then - before);
-  });
-  return out;
+  const int width_px = seen.sights.width_px;
+  const int height_px = seen.sights.height_px;
+  return HitPlaces(std::unique_ptr<const HitPlaces::Impl>(
+      new HitPlaces::Impl{seen, other, HitFollower(scene, render_scene, other, width_px, height_px, true, threads),
+                          HitFollower(scene, render_scene, seen.view, width_px, height_px, false, threads),
+                          CameraRays(seen.view.camera, height_px), same_view(seen.view.camera, other.camera),
+                          !seen.hits.empty() && seen.view.t_video_ns != other.t_video_ns}));
 }
 
 SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render_scene, const Camera& camera,
@@ -277,7 +302,7 @@ SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render
   out.other_px = Image<Vec2d>(width_px, height_px);
   out.other_depth_m = ImageGray(width_px, height_px, kFar);
   out.other_normal = ImageRgb(width_px, height_px);
-  const PixelHits seen = trace_pixel_hits(render_scene, {camera, other.t_video_ns}, width_px, height_px, threads);
+  const PixelHits seen = trace_pixel_hits(render_scene, {camera, other.t_video_ns}, width_px, height_px, true, threads);
   const HitFollower follower(scene, render_scene, other, width_px, height_px, true, threads);
   const CameraRays rays(camera, height_px);
   const PixelProjection view(camera, width_px, height_px);
@@ -296,7 +321,7 @@ SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render
     const Vec3d now = point_on(corners.now, hit);
     const Vec3d then = point_on(corners.then, hit);
     const PixelProjection::Place place = follower.view().point(then);
-    out.object.pixels[pixel] = follower.object(hit);
+    out.object.pixels[pixel] = seen.sights.pixels[pixel].object;
     out.depth_m.pixels[pixel] = static_cast<float>(view.point(now).depth_m);
     out.position_m.pixels[pixel] = to_float(now);
     out.normal.pixels[pixel] = facing(corners.now, view.toward(now));

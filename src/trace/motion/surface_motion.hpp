@@ -9,7 +9,9 @@
 
 namespace gazetrace {
 
-PixelHits trace_pixel_hits(const RenderScene& scene, const OtherView& view, int width_px, int height_px, int threads);
+// `with_triangles`: PixelHits::hits is wanted.
+PixelHits trace_pixel_hits(const RenderScene& scene, const OtherView& view, int width_px, int height_px,
+                           bool with_triangles, int threads);
 
 // `render_scene` may be in any pose.
 HitPlaces places_of_hits(const Scene& scene, const RenderScene& render_scene, const PixelHits& seen,
