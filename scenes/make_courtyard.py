@@ -240,6 +240,7 @@ def main():
     place_objects(out, material)
     place_plants(out, material)
     place_cameras(out)
+    out.json["scenes"][0]["extras"] = {"gazetrace": {"environment": "dusk.hdr"}}  # for renderers that choose one
     out.write(args.out, "courtyard")
     if not args.keep_textures:
         write_textures(os.path.join(args.out, "textures"))

@@ -109,7 +109,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   int threads = 0;
 
   // Exposure, colour, files
-  ExposureSettings exposure;
+  ExposureSettings exposure{.mode = ExposureMode::log_average};  // one for the sequence, see settle_exposure()
   ColorSettings color;
   std::vector<std::string> outputs;
   ExrSettings exr;

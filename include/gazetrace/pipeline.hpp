@@ -55,6 +55,7 @@ struct SequenceResult {
   bool interrupted = false;
   std::vector<std::int32_t> left;
   std::uint64_t clamped_half_values = 0, clamped_view_pixels = 0;
+  std::size_t dark_pictures = 0;                           // display pictures of which half is below 2 % of white
   std::vector<std::pair<std::string, std::string>> facts;  // decided while rendering; for RunRecord::facts
   Warnings warnings;
 };

@@ -4,6 +4,7 @@
 //   const Job job = load_job("job.toml");
 //   ResolvedJob resolved = resolve(job);
 //   PathTracer tracer(*resolved.scene, tracer_options(resolved.job.settings));
+//   settle_exposure(tracer, resolved);
 //   render_sequence(tracer, resolved.plan, ColorPipeline(resolved.job.settings.color), resolved.pipeline, {});
 #pragma once
 
@@ -62,9 +63,10 @@ struct ResolvedJob {
   std::optional<ProcessedGaze> steering;  // the gaze after the steps of `gaze-process`
   PlanSettings plan_settings;
   FramePlan plan;
-  std::vector<std::int32_t> frames;                  // those that are wanted
-  ChunkBorders chunk_borders;                        // prepare_outputs() writes them once
-  PipelineSettings pipeline;                         // with its digest, from the scope `digests` on
+  FramePlan exposure_probe;          // small frames of the whole sequence; empty where the exposure is fixed
+  std::vector<std::int32_t> frames;  // those that are wanted
+  ChunkBorders chunk_borders;        // prepare_outputs() writes them once
+  PipelineSettings pipeline;         // with its digest, from the scope `digests` on
   std::map<std::string, std::string> input_digests;  // path -> content hash
   // What was decided where the settings left a choice, such as "environment" -> "the built-in sky, ...", and which
   // settings were replaced by others.
@@ -95,6 +97,12 @@ void make_output_folders(const ResolvedJob& resolved);
 // The same, and Error(usage) where the job resumes and would render over finished frames of other settings or inputs,
 // unless it overwrites as well. Writes down how frames are divided. A run claims its files before (output_lock.hpp).
 void prepare_outputs(const ResolvedJob& resolved);
+
+// Where the exposure is automatic: renders `exposure_probe`, at most eight small frames, fixes the exposure of the
+// pipeline at their mean, to a hundredth of a stop, and says so in the decisions. It depends on the whole sequence and
+// not on the frames that are wanted, their sampling or their seed, so that parts of a sequence, and renderings to be
+// compared, share it. Without this call every frame has an exposure of its own.
+void settle_exposure(PathTracer& tracer, ResolvedJob& resolved);
 
 // The record of a run that begins now, whose state is "running"; finish_run_record() states how it ended. The record
 // carries no time of day of the gaze log unless the job keeps them, except those that the job itself states in

@@ -137,6 +137,7 @@ struct Scene {
   std::vector<PunctualLight> lights;
   std::vector<SceneCamera> cameras;
   Environment environment;
+  std::string own_environment;  // the picture that the file names in its extras; empty: none. It is not read
 
   std::vector<std::string> animations;  // names; "#0" where the file gives none
   std::vector<std::string> extensions_used;

@@ -180,7 +180,7 @@ int run(int argc, char** argv) {
   const Command& command = commands.at(chosen_command(app)->get_name());
   if (!config.empty()) {
     if (!command.read_config) {
-      throw Error(ErrorKind::usage, "`config`", "only 'render' and 'plan' take a settings file");
+      throw Error(ErrorKind::usage, "`config`", "only 'render', 'plan' and 'demo' take a settings file");
     }
     command.read_config(config);
   }

@@ -11,6 +11,7 @@ namespace gazetrace {
 
 Warnings idle_option_warnings(const Job& job, const JobSchema& schema) {
   Warnings warnings;
+  std::vector<std::string> for_gaze;  // that somebody forgot
   for (const OptionOf<JobSettings>& option : schema.options()) {
     // An option without a value of its own, such as a density while another sampling is chosen, has no default to keep.
     const bool is_default = !option.defaults.empty() && option.values(job.settings) == option.defaults;
@@ -19,10 +20,17 @@ Warnings idle_option_warnings(const Job& job, const JobSchema& schema) {
     }
     const auto rule = std::find_if(option.idle.begin(), option.idle.end(),
                                    [&](const IdleRule<JobSettings>& one) { return one.holds(job.settings); });
-    if (rule != option.idle.end()) {
+    if (rule != option.idle.end() && (rule->said ? rule->said(job.settings) : rule->words) == "without gaze") {
+      for_gaze.push_back("`" + option.name + "`");
+    } else if (rule != option.idle.end()) {
       warnings.push_back(
           fmt::format("`{}` does nothing {}", option.name, rule->said ? rule->said(job.settings) : rule->words));
     }
+  }
+  if (!for_gaze.empty()) {
+    warnings.insert(warnings.begin(),
+                    fmt::format("there is no gaze, and without it {} {} nothing: give `gaze` or `gaze-at`",
+                                fmt::join(for_gaze, ", "), for_gaze.size() == 1 ? "does" : "do"));
   }
   return warnings;
 }

@@ -9,6 +9,7 @@
 
 #include "gazetrace/error.hpp"
 #include "job/choose_frames.hpp"
+#include "job/exposure_probe.hpp"
 #include "job/frame_size.hpp"
 #include "job/gaze_inputs.hpp"
 #include "job/job_plan.hpp"
@@ -207,6 +208,7 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   }
   check_eccentricity(job, log);
   if (options.scope == ResolveScope::render) {
+    resolved.exposure_probe = plan_exposure_probe(job, inputs, resolved.plan_settings);
     check_density_pictures(job.foveation, resolved.plan);
   }
   warn_of_inputs(camera, log, options.scope, resolved);

@@ -86,6 +86,7 @@ FinishedRun run_job(const Job& job, const RunObserver& observer, const RunOption
   }
   PathTracer tracer(options.loaded != nullptr ? *options.loaded : *resolved.scene,
                     tracer_options(resolved.job.settings));
+  settle_exposure(tracer, resolved);
   const RunRecordFile file(files.empty() ? std::string() : files.front(), options.words);
   run.record = start_run_record(resolved, tracer, *color, options.command_line);
   if (resolved.job.settings.resume) {

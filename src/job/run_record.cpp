@@ -94,12 +94,6 @@ Warnings result_warnings(const SequenceResult& result, const FramePlan& plan) {
     return std::count_if(plan.frames.begin(), plan.frames.end(),
                          [&](const FrameRequest& request) { return request.gaze_render.state == state; });
   };
-  const auto held = std::count_if(plan.frames.begin(), plan.frames.end(), [](const FrameRequest& request) {
-    return request.gaze_render.no_gaze && request.gaze_render.state == GazeState::held;
-  });
-  if (held > 0) {
-    warnings.push_back(fmt::format("{} frames without gaze hold the nearest one in the past, or the first", held));
-  }
   const auto centered = count(GazeState::center);
   const bool has_gaze = std::any_of(plan.frames.begin(), plan.frames.end(), [](const FrameRequest& request) {
     return request.gaze_render.state != GazeState::none;
@@ -113,6 +107,12 @@ Warnings result_warnings(const SequenceResult& result, const FramePlan& plan) {
   if (result.clamped_half_values > 0) {
     warnings.push_back(fmt::format("{} values were clamped to the range of half floats; `exr-pixels` float keeps them",
                                    result.clamped_half_values));
+  }
+  if (result.dark_pictures > 0) {
+    warnings.push_back(
+        fmt::format("{} of {} pictures {} dark, half of each below 2 % of white: `exposure` (auto, or more stops) "
+                    "and `env` (sky, or a picture) bring light",
+                    result.dark_pictures, result.rows.size(), result.dark_pictures == 1 ? "is" : "are"));
   }
   if (result.clamped_view_pixels > 0) {
     warnings.push_back(fmt::format("{} pixels were clamped before the viewing transform", result.clamped_view_pixels));

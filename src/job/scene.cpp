@@ -18,6 +18,10 @@ std::string set_environment(const JobSettings& job, Scene& scene) {
   if (wanted == "none") {
     return "none";
   }
+  if (wanted == "auto" && !scene.own_environment.empty() && !scene.environment.present()) {
+    scene.environment = load_environment(scene.own_environment, job.environment_rotation_deg, job.environment_ev);
+    return scene.own_environment + ", which the scene names (`env` chooses)";
+  }
   if (wanted == "auto") {
     const SceneFeatures features = features_of(scene);
     if (features.emissive_triangles || features.punctual_lights || scene.environment.present()) {

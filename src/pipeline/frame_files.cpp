@@ -2,6 +2,7 @@
 #include "pipeline/frame_files.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -41,6 +42,25 @@ FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const 
   header.samples_per_pixel = samples_of_every_pixel(rendered.frame.sample_count);
   header.software = std::string("gazetrace ") + kVersion;
   return header;
+}
+
+// Whether half of the pixels are below 2 % of white in every colour.
+bool is_dark(const DisplayImage& image) {
+  const double white = image.bits == 8 ? 255 : 65535;
+  const auto pixels = static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px);
+  std::size_t dark = 0;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    double most = 0;
+    for (std::size_t channel = 3 * i; channel < 3 * i + 3; ++channel) {
+      std::uint16_t code = image.bits == 8 ? image.bytes[channel] : 0;
+      if (image.bits != 8) {
+        std::memcpy(&code, &image.bytes[2 * channel], sizeof(code));
+      }
+      most = std::max(most, static_cast<double>(code));
+    }
+    dark += most < 0.02 * white ? 1 : 0;
+  }
+  return 2 * dark > pixels;
 }
 
 bool writes_anything(const OutputSettings& output) {
@@ -86,6 +106,7 @@ void write_frame_files(const FrameRequest& request, const FramePlan& plan, const
     list(path, write_display_image(path, image, header, output.display));
     row.write_ms += watch.elapsed_ms();
     result.clamped_view_pixels += clamped;
+    result.dark_pictures += is_dark(image) ? 1 : 0;
   }
   if (!output.exr.pattern.empty()) {
     const std::string path = frame_file_name(output.exr.pattern, request.frame);

@@ -79,6 +79,21 @@ std::vector<std::string> scene_files(const std::string& path, bool allow_outside
   if (!json.is_object()) {
     return files;
   }
+  const auto add = [&](const std::string& text, const std::string& kind) {
+    if (text.empty() || text.starts_with("data:")) {
+      return;
+    }
+    // As the reader of scenes names it: where a folder on the way is a link, `..` behind it leads elsewhere.
+    const std::string file = (fs::path(path).parent_path() / percent_decoded(text)).lexically_normal().string();
+    if (!allow_outside) {
+      check_within(roots, file, text, path + ": " + kind);
+    }
+    // A missing image is the scene reader's business: it may go on with a warning.
+    std::error_code unknown;
+    if (fs::is_regular_file(file, unknown) && std::find(files.begin(), files.end(), file) == files.end()) {
+      files.push_back(file);
+    }
+  };
   for (const char* kind : {"buffers", "images"}) {
     const auto list = json.find(kind);
     if (list == json.end() || !list->is_array()) {
@@ -86,22 +101,17 @@ std::vector<std::string> scene_files(const std::string& path, bool allow_outside
     }
     for (const auto& item : *list) {
       const auto uri = item.is_object() ? item.find("uri") : item.end();
-      if (!item.is_object() || uri == item.end() || !uri->is_string()) {
-        continue;
+      if (item.is_object() && uri != item.end() && uri->is_string()) {
+        add(uri->get<std::string>(), kind);
       }
-      const auto text = uri->get<std::string>();
-      if (text.starts_with("data:")) {
-        continue;
-      }
-      // As the reader of scenes names it: where a folder on the way is a link, `..` behind it leads elsewhere.
-      const std::string file = (fs::path(path).parent_path() / percent_decoded(text)).lexically_normal().string();
-      if (!allow_outside) {
-        check_within(roots, file, text, path + ": " + kind);
-      }
-      // A missing image is the scene reader's business: it may go on with a warning.
-      if (fs::is_regular_file(file) && std::find(files.begin(), files.end(), file) == files.end()) {
-        files.push_back(file);
-      }
+    }
+  }
+  // The environment that a scene names: of whichever of its scenes is shown.
+  const auto scenes = json.find("scenes");
+  for (const auto& scene : scenes != json.end() && scenes->is_array() ? *scenes : nlohmann::json::array()) {
+    const nlohmann::json::json_pointer place("/extras/gazetrace/environment");
+    if (scene.is_object() && scene.contains(place) && scene.at(place).is_string()) {
+      add(scene.at(place).get<std::string>(), "extras.gazetrace.environment");
     }
   }
   return files;

@@ -147,6 +147,35 @@ class FramesWithoutGaze {
   std::int32_t first_ = 0;
 };
 
+// Before a frame is rendered: where the eye is only said to be.
+void warn_of_held_gaze(const std::vector<FrameRequest>& frames, const GazeLog& log, Warnings& warnings) {
+  std::size_t held = 0;
+  std::size_t after_end = 0;
+  std::int32_t first_after = 0;
+  for (const FrameRequest& request : frames) {
+    const GazeAtTime& gaze = request.gaze_render;
+    if (!gaze.no_gaze || gaze.state != GazeState::held) {
+      continue;
+    }
+    ++held;
+    if (!log.samples.empty() && gaze.t_log_ns > log.samples.back().t_ns) {
+      first_after = after_end == 0 ? request.frame : first_after;
+      ++after_end;
+    }
+  }
+  if (after_end > 0) {
+    warnings.push_back(
+        fmt::format("{} of {} frames, from frame {} on, lie after the end of the gaze log and hold its last gaze: end "
+                    "`frames` before, or give `gaze-missing`",
+                    after_end, frames.size(), first_after));
+  }
+  if (held > after_end) {
+    warnings.push_back(
+        fmt::format("{} of {} frames have no gaze of their own and hold the nearest one in the past, or the first",
+                    held - after_end, frames.size()));
+  }
+}
+
 // Fixes the beginning of the clock to the log's first sample, since processing may remove that sample.
 PlanSettings with_clock(const GazeLog* log, PlanSettings settings) {
   if (log != nullptr && !settings.gaze.event_ns && !log->samples.empty()) {
@@ -214,6 +243,9 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
       request.gaze_true.reason = "no gaze log";
     }
     plan.frames.push_back(std::move(request));
+  }
+  if (log != nullptr) {
+    warn_of_held_gaze(plan.frames, *steering_log, plan.warnings);
   }
   plan.ages = gaze_ages(plan, settings);
   warn_about_latency(settings, plan.warnings);

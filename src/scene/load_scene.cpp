@@ -131,6 +131,10 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
   Scene scene;
   scene.source = path;
   scene.extensions_used = document.extensions_used;
+  if (!document.environment_uri.empty()) {
+    scene.own_environment =
+        resolve_uri(path, file.roots, document.environment_uri, path + ": extras.gazetrace.environment");
+  }
   list_extensions(document, scene);
   list_unshown(document, scene);
   warn_of_offset(document, scene.warnings);

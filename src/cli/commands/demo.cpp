@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shipped example from end to end, by the program's own commands, which are printed so that they can be repeated.
+// The shipped example, or a job of one's own, from end to end by the program's own commands, which are printed so that
+// they can be repeated.
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -12,18 +13,21 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/demo_measurement.hpp"
 #include "cli/exit_codes.hpp"
 #include "cli/external_program.hpp"
 #include "cli/json_output.hpp"
 #include "cli/own_program.hpp"
 #include "cli/progress.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/job.hpp"
 
 extern char** environ;
 
@@ -34,8 +38,8 @@ namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
 struct DemoArguments {
-  std::string folder = "gazetrace-demo", data;
-  std::string frames = "1-24", size;
+  std::string folder = "gazetrace-demo", data, config;
+  std::string frames, size;
   bool overwrite = false, without_sweep = false;
   JsonOutput json;
 };
@@ -94,38 +98,53 @@ struct Step {
   bool may_fail = false;  // the demo is worth its time without
 };
 
-std::vector<Step> steps_of(const DemoArguments& arguments, const fs::path& data, bool has_ffmpeg) {
+// A rendering of some frames of the job into a folder of the demo.
+Words render_words(const DemoArguments& arguments, const std::string& config, const std::string& frames,
+                   const char* name, const Words& more) {
+  const std::string pattern = (fs::path(arguments.folder) / name / "frame.####").string();
+  Words words{"render", "--config", config, "--overwrite", "-o", pattern + ".exr", "-o", pattern + ".png"};
+  if (!frames.empty()) {
+    words.insert(words.end(), {"--frames", frames});
+  }
+  if (!arguments.size.empty()) {
+    words.insert(words.end(), {"--size", arguments.size});
+  }
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+// `wall_s`, `samples` and `pixels` of a run that wrote its summary there.
+FirstFrame first_frame_of(const std::string& summary) {
+  std::ifstream file(summary);
+  const auto json = nlohmann::json::parse(file, nullptr, false);
+  if (!json.is_object() || json.value("pixels", 0.0) <= 0) {
+    throw Error(ErrorKind::runtime, summary, "the first frame left no summary",
+                "start the demo again with --overwrite");
+  }
+  return {json.value("samples", 0.0) / json.value("pixels", 0.0), json.value("wall_s", 0.0)};
+}
+
+std::vector<Step> steps_of(const DemoArguments& arguments, const std::string& config, const std::string& frames,
+                           const std::string& plan, const FirstFrame& first, bool has_ffmpeg) {
   const fs::path folder(arguments.folder);
   const auto in = [&](const char* name) { return (folder / name).string(); };
-  const std::string config = (data / "examples" / "example.toml").string();
-  Words common{"--config", config, "--frames", arguments.frames, "--overwrite"};
-  if (!arguments.size.empty()) {
-    common.insert(common.end(), {"--size", arguments.size});
-  }
-  const auto render = [&](const char* name, const Words& more) {
-    Words words{"render"};
-    words.insert(words.end(), common.begin(), common.end());
-    const std::string pattern = in(name) + "/frame.####";
-    words.insert(words.end(), {"-o", pattern + ".exr", "-o", pattern + ".png"});
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  };
   std::vector<Step> steps{
-      {"Frames that are sampled where the eye looked", render("foveated", {})},
-      {"The same frames with one sample in every pixel, which takes about the same time",
-       render("uniform", {"--sampling", "uniform", "--spp", "1"})},
+      {"Frames that are sampled where the eye looked", render_words(arguments, config, frames, "foveated", {})},
+      {"The same frames with the same number of samples, spread evenly",
+       render_words(arguments, config, frames, "uniform",
+                    {"--sampling", "uniform", "--spp", fmt::format("{:.3g}", first.spp)})},
   };
   if (has_ffmpeg) {
     steps.push_back(
         {"A video of them", {"video", in("foveated/frame.####.png"), "-o", in("foveated.mp4"), "--overwrite"}});
-    steps.push_back({"Both beside each other, with the gaze and the borders of the regions",
+    steps.push_back({"Both beside each other: spread evenly on the left, where the eye looked (ring) on the right",
                      {"video", in("uniform/frame.####.exr"), in("foveated/frame.####.exr"), "-o",
-                      in("side-by-side.mp4"), "--show-gaze", "--show-rings", "--overwrite"}});
+                      in("side-by-side.mp4"), "--show-gaze", "--overwrite"}});
   }
   if (arguments.without_sweep) {
     return steps;
   }
-  Words sweep{"sweep", (data / "examples" / "demo.toml").string(), "-o", in("sweep"), "--quiet"};
+  Words sweep{"sweep", plan, "-o", in("sweep")};
   if (arguments.overwrite) {
     sweep.emplace_back("--restart");
   }
@@ -136,18 +155,36 @@ std::vector<Step> steps_of(const DemoArguments& arguments, const fs::path& data,
 
 int run_demo(const DemoArguments& arguments) {
   const fs::path folder(arguments.folder);
+  const auto in = [&](const char* name) { return (folder / name).string(); };
   std::error_code ignored;
   if (!arguments.overwrite && fs::exists(folder, ignored) && !fs::is_empty(folder, ignored)) {
     throw Error(ErrorKind::input, arguments.folder, "this folder is there already",
                 "give --overwrite or another folder");
   }
   arguments.json.check();
-  const fs::path data = find_data(arguments.data);
+  const bool is_own = !arguments.config.empty();
+  const fs::path data = is_own ? fs::path() : find_data(arguments.data);
+  const std::string config = is_own ? arguments.config : (data / "examples" / "example.toml").string();
+  const std::string frames = arguments.frames.empty() && !is_own ? "1-24" : arguments.frames;
+  const std::string plan = is_own ? in("measurement.toml") : (data / "examples" / "demo.toml").string();
   const bool has_ffmpeg = find_on_path("ffmpeg").has_value();
   const auto begin = std::chrono::steady_clock::now();
+  const Job job = load_job(config);
+  const std::string middle = std::to_string(middle_frame(job, frames));
+  if (const int code = run_step("One frame, to see how long all will take",
+                                render_words(arguments, config, middle, "first",
+                                             {"--accumulate", "off", "--json", in("first.json"), "--quiet"}));
+      code != exit_done) {
+    return code;
+  }
+  const FirstFrame first = first_frame_of(in("first.json"));
+  std::fputs(estimate_text(job, frames, first, !arguments.without_sweep).c_str(), stderr);
+  if (is_own && !arguments.without_sweep) {
+    std::ofstream(plan) << measurement_of(job, middle);
+  }
   double first_picture_s = 0;
   bool has_page = !arguments.without_sweep;
-  for (const Step& step : steps_of(arguments, data, has_ffmpeg)) {
+  for (const Step& step : steps_of(arguments, config, frames, plan, first, has_ffmpeg)) {
     if (const int code = run_step(step.what, step.words); code != exit_done) {
       if (!step.may_fail || code == exit_interrupted) {
         return code;
@@ -158,7 +195,6 @@ int run_demo(const DemoArguments& arguments) {
     first_picture_s = first_picture_s > 0 ? first_picture_s : now_s;
   }
   const double all_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const auto in = [&](const char* name) { return (folder / name).string(); };
   std::vector<std::pair<std::string, std::string>> made{{"frames", in("foveated/frame.0001.png") + " and so on"}};
   if (has_ffmpeg) {
     made.emplace_back("video", in("foveated.mp4"));
@@ -193,15 +229,19 @@ Command add_demo_command(CLI::App& app, const Invocation& /*invocation*/) {
                  "The folder that holds examples/, scenes/ and gazelogs/; default: that of the installation or the "
                  "repository")
       ->type_name("DIR");
-  app.add_option("--frames", arguments->frames, "Which frames of the example")
-      ->type_name("LIST")
-      ->capture_default_str();
-  app.add_option("--size", arguments->size, "Their size; default: that of the example")->type_name("WxH");
+  app.add_option("--frames", arguments->frames, "Which frames; default: 1-24 of the example, those of --config")
+      ->type_name("LIST");
+  app.add_option("--size", arguments->size, "Their size; default: that of the example or of --config")
+      ->type_name("WxH");
   app.add_flag("--no-sweep", arguments->without_sweep, "Leaves out the measurement and its report");
   app.add_flag("--overwrite", arguments->overwrite, "Replaces what the folder holds of an earlier demo");
   add_json_option(app, arguments->json, arguments->overwrite);
-  app.footer(kExitCodesHelp);
-  return {[arguments] { return run_demo(*arguments); }, {}};
+  app.footer(
+      std::string("--config FILE takes a job of your own in place of the example: settings of 'gazetrace render' "
+                  "with scene and gaze.\n") +
+      kExitCodesHelp);
+  return {[arguments] { return run_demo(*arguments); },
+          [arguments](const std::string& path) { arguments->config = path; }};
 }
 
 }  // namespace gazetrace

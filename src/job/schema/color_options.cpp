@@ -27,8 +27,9 @@ void add_color_options(JobSchema& schema) {
   schema.group("Exposure and colour");
   schema
       .value("--exposure", &JobSettings::exposure, "STOPS|auto", Touch::color,
-             "Exposure in stops, or auto for one that follows the log-average luminance of the frame, with a shift if "
-             "wanted: auto+0.5")
+             "Exposure in stops, or auto for one that follows from the log-average luminance of at most eight small "
+             "frames of the whole sequence, the same for all its frames, with a shift if wanted: auto+0.5. EXRs do not "
+             "depend on it")
       .within(-kMaxStops, kMaxStops)
       .with(Trait::always_stated)
       .with(Trait::everyday);

@@ -14,8 +14,8 @@ void add_scene_options(JobSchema& schema) {
   schema
       .value("--env", &JobSettings::environment, "FILE|sky|soft-sky|constant:R,G,B|none|auto", Touch::light,
              "Light from all around: a lat-long .hdr or .exr, the built-in clear sky with its sun, one without a sun "
-             "(soft-sky), a constant radiance, or none; auto is the sky for a scene without light of its own, "
-             "otherwise none")
+             "(soft-sky), a constant radiance, or none; auto is what the scene names in its extras, else the sky for a "
+             "scene without light of its own, otherwise none")
       .decides_by_file()
       .with(Trait::everyday);
   schema.value("--env-rotation", &JobSettings::environment_rotation_deg, "DEG", Touch::light,

@@ -260,6 +260,18 @@ std::vector<int> scene_roots(const tinygltf::Model& model) {
   return roots;
 }
 
+// What a scene says of the light around it, in {"extras": {"gazetrace": {"environment": "dusk.hdr"}}}.
+std::string environment_uri(const tinygltf::Model& model) {
+  if (model.scenes.empty()) {
+    return {};
+  }
+  const auto index = static_cast<std::size_t>(std::max(model.defaultScene, 0));
+  const Value& extras = model.scenes[std::min(index, model.scenes.size() - 1)].extras;
+  const Value own = extras.Has("gazetrace") ? extras.Get("gazetrace") : Value();
+  const Value uri = own.Has("environment") ? own.Get("environment") : Value();
+  return uri.IsString() ? uri.Get<std::string>() : std::string();
+}
+
 // CESIUM_RTC: an offset of the whole model, in metres. It becomes a node above all others, so that bodies, cameras,
 // lights and what animations and skins do follow it alike.
 void add_offset(const tinygltf::Model& model, GltfDocument& document) {
@@ -340,6 +352,7 @@ GltfDocument parse_gltf(const std::string& path, const CheckedGltf& checked) {
   });
   document.roots = scene_roots(model);
   document.scene_count = model.scenes.size();
+  document.environment_uri = environment_uri(model);
   add_offset(model, document);
   return document;
 }

@@ -147,7 +147,8 @@ struct GltfDocument {
   std::vector<GltfSkin> skins;
   std::vector<int> roots;  // of the default scene, or all root nodes where there is no scene
   std::size_t scene_count = 0;
-  Vec3d offset_m{0, 0, 0};  // CESIUM_RTC, which its own node above all others applies
+  std::string environment_uri;  // extras.gazetrace.environment of the default scene; empty: it names none
+  Vec3d offset_m{0, 0, 0};      // CESIUM_RTC, which its own node above all others applies
 };
 
 // Runs the parser on checked JSON. The buffers are left empty for the caller to fill.
