@@ -71,13 +71,11 @@ class HitPlaces {
 // the middle of their frames' times. Where the ray misses everything, other_px is where its direction is.
 struct SurfaceMotion {
   ImageGray depth_m;            // along the view axis; +Inf for a miss
-  ImageRgb normal;              // of the triangle, unit, towards the camera; zero for a miss
   Image<std::uint32_t> object;  // 1 + index into Scene::instances; 0: a miss
   ImageRgb position_m;          // in the world; zero for a miss
   Image<Vec2d> other_px;        // where the same point of the surface is, in continuous coordinates (pixel centres at
                                 // + 0.5); NaN where it is not in front of the other camera
   ImageGray other_depth_m;      // along the other view's axis; +Inf for a miss
-  ImageRgb other_normal;        // as `normal`, of the triangle at the other time, towards the other camera
 };
 
 // Projects points of the world into continuous pixel coordinates of a frame, with their depth along the view axis.
@@ -103,11 +101,6 @@ class PixelProjection {
   // The pixel of something infinitely far away in direction `d`. NaN where that is not in front of the camera, and
   // always without perspective.
   [[nodiscard]] Vec2d direction(const Vec3d& d) const;
-  // The depth at which the ray through `other_px` meets the plane through the point at `px` and `depth_m` with this
-  // normal (world space). Infinite or NaN where the two are parallel, negative where they meet behind the camera.
-  [[nodiscard]] double depth_on_plane(const Vec2d& px, double depth_m, const Vec3d& normal,
-                                      const Vec2d& other_px) const;
-  [[nodiscard]] Vec3d toward(const Vec3d& p) const;  // unit direction from a point to the camera
 
  private:
   bool perspective_ = true;

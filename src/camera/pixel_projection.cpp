@@ -30,23 +30,4 @@ Vec2d PixelProjection::direction(const Vec3d& d) const {
   return {center_px_.x + dot(d, right_) / (step_ * along), center_px_.y - dot(d, up_) / (step_ * along)};
 }
 
-double PixelProjection::depth_on_plane(const Vec2d& px, double depth_m, const Vec3d& normal,
-                                       const Vec2d& other_px) const {
-  // In camera axes: a point at depth z and pixel offset (x, y) is z (s x, s y, 1), or (s x, s y, z) without
-  // perspective.
-  const double nx = dot(normal, right_) * step_;
-  const double ny = -dot(normal, up_) * step_;
-  const double nz = dot(normal, forward_);
-  const Vec2d a{px.x - center_px_.x, px.y - center_px_.y};
-  const Vec2d b{other_px.x - center_px_.x, other_px.y - center_px_.y};
-  if (perspective_) {
-    return depth_m * (nx * a.x + ny * a.y + nz) / (nx * b.x + ny * b.y + nz);
-  }
-  return depth_m + (nx * (a.x - b.x) + ny * (a.y - b.y)) / nz;
-}
-
-Vec3d PixelProjection::toward(const Vec3d& p) const {
-  return perspective_ ? normalize(origin_ - p) : -forward_;
-}
-
 }  // namespace gazetrace

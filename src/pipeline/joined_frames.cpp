@@ -21,6 +21,9 @@ JoinedFrames::JoinedFrames(const FrameRenderer& renderer, const FramePlan& plan,
 
 RenderedFrame JoinedFrames::render(const FrameRequest& request) {
   const AccumulateSettings& reach = renderer_->settings().accumulate;
+  if (reach.mode == AccumulateMode::off) {
+    return renderer_->render(request, light_);
+  }
   // Consecutive frames as far as they are there. In 64 bits, since the largest number of a frame has none after it.
   const auto own = requests_.find(request.frame);
   auto first = own;

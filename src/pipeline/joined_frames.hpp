@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames in order that read those around them: traces ahead, and keeps what frames to come still read.
+// Frames in order: each by itself, or beside those around it, which are traced ahead and kept while frames to come read
+// them. Frames at rest share what they have learned of their light.
 #pragma once
 
 #include <cstdint>

@@ -17,9 +17,9 @@
 #include "pipeline/file_journal.hpp"
 #include "pipeline/frame_files.hpp"
 #include "pipeline/frame_stages.hpp"
+#include "pipeline/joined_frames.hpp"
 #include "pipeline/quality/clip_rate.hpp"
 #include "pipeline/resume.hpp"
-#include "pipeline/sequence_renderer.hpp"
 #include "pipeline/timing_log.hpp"
 #include "pipeline/timing_row.hpp"
 
@@ -109,11 +109,11 @@ struct SequenceInputs {
 
 // Makes the picture of a frame. Its files are those of `result`, and its row lacks what the choice of a rate took.
 // Error(interrupted) leaves the row as it was, and `result` without files: a frame is given up only while it is traced.
-RenderedFrame make_frame(const SequenceInputs& inputs, const FrameRequest& request, SequenceRenderer& renderer,
+RenderedFrame make_frame(const SequenceInputs& inputs, const FrameRequest& request, JoinedFrames& frames,
                          TimingRow& row, SequenceResult& result) {
   const Stopwatch total;
   result.files.clear();
-  RenderedFrame rendered = renderer.render(request);
+  RenderedFrame rendered = frames.render(request);
   add_samples(rendered.samples, rendered.pilot, rendered.map, row);
   add_others(rendered.others, row);
   result.bad_samples.insert(result.bad_samples.end(), rendered.samples.bad_samples.begin(),
@@ -130,7 +130,7 @@ RenderedFrame make_frame(const SequenceInputs& inputs, const FrameRequest& reque
 }
 
 // All frames of the plan in order, until the sequence is asked to stop.
-void make_frames(const SequenceInputs& inputs, const ResumePlan& resume, SequenceRenderer& renderer,
+void make_frames(const SequenceInputs& inputs, const ResumePlan& resume, JoinedFrames& frames,
                  const std::optional<ClipRate>& rate, RunLog& log, SequenceResult& result) {
   const FramePlan& plan = inputs.plan;
   const PipelineObserver& observer = inputs.observer;
@@ -155,7 +155,7 @@ void make_frames(const SequenceInputs& inputs, const ResumePlan& resume, Sequenc
     }
     const Stopwatch own_time;  // without the choice of the rate, which the first row counts
     RenderedFrame rendered;
-    result.interrupted = !is_completed([&] { rendered = make_frame(inputs, request, renderer, row, result); });
+    result.interrupted = !is_completed([&] { rendered = make_frame(inputs, request, frames, row, result); });
     if (result.interrupted) {
       return;
     }
@@ -196,14 +196,15 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
     result.warnings.insert(result.warnings.end(), doubts.begin(), doubts.end());
   }
 
-  SequenceRenderer renderer(tracer, std::move(own), plan, {to_render.begin(), to_render.end()});
+  const FrameRenderer renderer(tracer, std::move(own));
+  JoinedFrames joined(renderer, plan, {to_render.begin(), to_render.end()});
   RunLog log{TimingLog(paths.timing, resume.kept_rows), FileJournal(paths.record, resume.kept_files)};
   if (!settings.output.display.pattern.empty() && !plan.frames.empty()) {
     const FrameRequest& first = plan.frames.front();
     color.prepare(first.width_px, first.height_px, display_image_bits(settings.output.display), settings.threads);
   }
   if (!result.interrupted) {
-    make_frames({plan, color, settings, observer}, resume, renderer, rate, log, result);
+    make_frames({plan, color, settings, observer}, resume, joined, rate, log, result);
   }
   if (result.interrupted) {
     result.left = frames_left(to_render, result.rows);

@@ -152,16 +152,13 @@ std::vector<ImageRgb> WindowClip::look_at(std::size_t window, const FrameSetting
 
 void WindowClip::render(const FramePlan& plan, const FrameSettings& settings, std::vector<ImageRgb>& pictures) {
   const FrameRenderer renderer(tracer_, settings);
-  std::optional<JoinedFrames> joined;
-  if (settings.accumulate.mode == AccumulateMode::window) {
-    std::set<std::int32_t> numbers;
-    for (const FrameRequest& request : plan.frames) {
-      numbers.insert(request.frame);
-    }
-    joined.emplace(renderer, plan, numbers);
-  }
+  std::set<std::int32_t> numbers;
   for (const FrameRequest& request : plan.frames) {
-    RenderedFrame rendered = joined ? joined->render(request) : renderer.render(request);
+    numbers.insert(request.frame);
+  }
+  JoinedFrames frames(renderer, plan, numbers);
+  for (const FrameRequest& request : plan.frames) {
+    RenderedFrame rendered = frames.render(request);
     add_traces(rendered.samples, stats_);
     add_traces(rendered.others, stats_);
     pictures.push_back(std::move(rendered.frame.radiance));

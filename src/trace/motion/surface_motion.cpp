@@ -296,12 +296,10 @@ SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render
   constexpr float kFar = std::numeric_limits<float>::infinity();
   SurfaceMotion out;
   out.depth_m = ImageGray(width_px, height_px, kFar);
-  out.normal = ImageRgb(width_px, height_px);
   out.object = Image<std::uint32_t>(width_px, height_px);
   out.position_m = ImageRgb(width_px, height_px);
   out.other_px = Image<Vec2d>(width_px, height_px);
   out.other_depth_m = ImageGray(width_px, height_px, kFar);
-  out.other_normal = ImageRgb(width_px, height_px);
   const PixelHits seen = trace_pixel_hits(render_scene, {camera, other.t_video_ns}, width_px, height_px, true, threads);
   const HitFollower follower(scene, render_scene, other, width_px, height_px, true, threads);
   const CameraRays rays(camera, height_px);
@@ -314,20 +312,14 @@ SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render
       return;
     }
     const Corners corners = follower.corners_of(hit);
-    const auto facing = [](const std::array<Vec3d, 3>& c, const Vec3d& toward) {
-      const Vec3d face = normalize(cross(c[1] - c[0], c[2] - c[0]));
-      return to_float(dot(face, toward) < 0 ? -face : face);
-    };
     const Vec3d now = point_on(corners.now, hit);
     const Vec3d then = point_on(corners.then, hit);
     const PixelProjection::Place place = follower.view().point(then);
     out.object.pixels[pixel] = seen.sights.pixels[pixel].object;
     out.depth_m.pixels[pixel] = static_cast<float>(view.point(now).depth_m);
     out.position_m.pixels[pixel] = to_float(now);
-    out.normal.pixels[pixel] = facing(corners.now, view.toward(now));
     out.other_px.pixels[pixel] = same && follower.stays(hit) ? center_of(pixel, width_px) : place.px;
     out.other_depth_m.pixels[pixel] = static_cast<float>(place.depth_m);
-    out.other_normal.pixels[pixel] = facing(corners.then, follower.view().toward(then));
   });
   return out;
 }
