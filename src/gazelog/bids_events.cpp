@@ -57,6 +57,11 @@ EventsOfEye events_of(const GazeLog& log, Eye eye, const std::vector<BidsRecordi
   return found;
 }
 
+bool has_trials(const GazeLog& log) {
+  return std::any_of(log.events.begin(), log.events.end(),
+                     [](const GazeEvent& event) { return event.type == GazeEventType::trial; });
+}
+
 // Seconds with as many digits as there are nanoseconds.
 std::string seconds(std::int64_t ns) {
   const auto magnitude = ns < 0 ? 0 - static_cast<std::uint64_t>(ns) : static_cast<std::uint64_t>(ns);
@@ -168,15 +173,19 @@ Json screen_json(const GazeLog& log) {
   return screen;
 }
 
-Json events_sidecar(Eye eye, bool has_stated) {
+Json events_sidecar(Eye eye, bool has_stated, bool has_trials) {
   Json json{{kBidsWriterKey, kBidsWriter},
             {"Columns", {"onset", "duration", "trial_type", "blink", "message"}},
             {"Description", fmt::format("What the log states of the movements of the {} eye", to_string(eye))},
             {"OnsetSource", "timestamp"},
             {"duration", {{"Units", "s"}}},
-            {"trial_type", {{"Description", "fixation, saccade, segment, trial or aoi; n/a of blinks and messages"}}},
+            {"trial_type",
+             {{"Description", has_trials ? "fixation, saccade, segment, trial or aoi; n/a of blinks and messages"
+                                         : "fixation, saccade, segment or aoi; n/a of blinks and messages"}}},
             {"blink", {{"Description", "1 for a blink, else 0"}}},
-            {"message", {{"Description", "The words of a message, or the name of a trial or of an area of interest"}}}};
+            {"message",
+             {{"Description", has_trials ? "The words of a message, or the name of a trial or of an area of interest"
+                                         : "The words of a message, or the name of an area of interest"}}}};
   if (has_stated) {
     for (const auto& [column, unit, what] :
          {std::tuple("stated_duration", "s", "The duration by the tracker, which may count the last sample's own time"),
@@ -199,8 +208,10 @@ Json run_events_sidecar(const GazeLog& log) {
   json["trial_type"] = {{"Description", "What happened"},
                         {"Levels",
                          {{"recording", "Gaze was recorded without a pause"},
-                          {"trial", "A trial, of which the message is the name"},
                           {"message", "A message of the experiment or of the tracker"}}}};
+  if (has_trials(log)) {
+    json["trial_type"]["Levels"]["trial"] = "A trial, of which the message is the name";
+  }
   json["message"] = {{"Description", "The words of a message"}};
   return json;
 }
@@ -209,7 +220,7 @@ Json run_events_sidecar(const GazeLog& log) {
 
 BidsEvents bids_events_of_eye(const GazeLog& log, Eye eye, const std::vector<BidsRecording>& recordings) {
   const EventsOfEye events = events_of(log, eye, recordings);
-  return {events_table(events), events_sidecar(eye, events.has_stated)};
+  return {events_table(events), events_sidecar(eye, events.has_stated, has_trials(log))};
 }
 
 BidsEvents bids_run_events(const GazeLog& log) {

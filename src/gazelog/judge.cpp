@@ -102,6 +102,8 @@ class Judge {
     std::size_t first_quarter = 0;  // to the right of and above 0
     std::size_t beside = 0;
     std::size_t beside_center = 0;
+    std::size_t on_right = 0;  // of the display, on one of its size
+    std::size_t on_left = 0;
     const RawRows rows = measurable_rows(raw_, c_);
     for (const RawSample row : rows) {
       const Vec2d at = (*to_fractions)({row.at.x, row.at.y});
@@ -114,6 +116,8 @@ class Judge {
       first_quarter += row.at.x >= 0 && row.at.y >= 0 ? 1 : 0;
       beside += is_beside(at.x, at.y) ? 1 : 0;
       beside_center += is_beside(at.x + 0.5, at.y + 0.5) ? 1 : 0;
+      on_right += is_beside(at.x - 1, at.y) ? 0 : 1;
+      on_left += is_beside(at.x + 1, at.y) ? 0 : 1;
     }
     constexpr std::size_t kFewest = 3;
     constexpr std::size_t kEnough = 50;
@@ -129,7 +133,15 @@ class Judge {
                           percent(beside_center))
             : "";
     constexpr std::size_t kFew = 10;
-    if (!is_centered && percent(negative) > (count < kFew ? 50 : 25)) {
+    const std::size_t on_other = std::max(on_right, on_left);
+    if (is_known && c_.unit.value == PositionUnit::px && !is_centered && count > kEnough && percent(on_other) > 90) {
+      const bool is_right = on_right >= on_left;
+      add({"beside-the-display",
+           fmt::format("the positions lie on a monitor to the {} of the display", is_right ? "right" : "left"),
+           fmt::format("{:.0f} % of them, as where two monitors stand beside each other", percent(on_other)),
+           fmt::format("`corner` {},0", is_right ? display_.width_px : -display_.width_px)},
+          Evidence::header);
+    } else if (!is_centered && percent(negative) > (count < kFew ? 50 : 25)) {
       add({"origin", "the positions count from the center of the display rather than from its corner",
            fmt::format("{:.0f} % of them are negative{}{}", percent(negative), lie.empty() ? "" : ", and ", lie),
            "`origin` center"},

@@ -34,9 +34,19 @@ PLACES = {
 AXES = {"gl": lambda x, y, z: (x, y, z), "unity": lambda x, y, z: (x, y, -z), "sranipal": lambda x, y, z: (-x, y, -z),
         "cv": lambda x, y, z: (x, -y, -z)}
 SCREEN = ["--screen-px", f"{WIDTH},{HEIGHT}", "--screen-cm", "51,29", "--screen-distance-cm", "60"]
-# Pairs of a truth and a statement that no data tell apart: mirrored pictures, and scales near each other.
-ALIKE = [{"fraction", "fraction from the bottom left"}, {"px", "px from the bottom left"}, {"norm", "height", "rad"},
+# Pairs of a truth and a statement that no data tell apart: mirrored pictures, origins under which gaze stays on the display,
+# and scales near each other.
+SMALL = {"fraction", "fraction from the bottom left", "norm", "height", "rad"}
+ALIKE = [SMALL, {"px", "px from the bottom left"}, {"px from the bottom left", "px from the center"},
          {"cm from the center", "deg"}, {"unity", "sranipal", "cv"}]
+# Of these, saccades are too few or too coarsely sampled to be measured, and nothing tells how large the movements were.
+UNMEASURED = {"eyelink-asc/mono500.asc", "tobii-studio-tsv/data.tsv", "smi-iview-txt/recording1_Samples.txt",
+              "bids/derived-tx300/sub-01_task-view_recording-eye1_physio.tsv.gz"}
+
+
+def are_alike(name, true, said):
+    is_scale = true in SMALL and said in {"cm from the center", "deg"}
+    return any(true in pair and said in pair for pair in ALIKE) or (is_scale and name in UNMEASURED)
 
 
 def rows_of(path):
@@ -64,7 +74,10 @@ class Readings:
         """Refused, named, right, or silent and wrong."""
         command = ["import", "-o", self.folder / "read.csv"] if options else ["events", "-o", self.folder / "events.tsv"]
         result = self.run("gaze", *command, self.folder / "table.csv", *SCREEN, *options, "--overwrite")
-        doubts = [line for line in result.stderr.splitlines() if "table.csv" in line and "guessed from its steps" not in line]
+        lines = result.stderr.splitlines()
+        if options and result.returncode == 0:  # what reads the file has doubts of its own
+            lines += self.run("gaze", "events", self.folder / "read.csv", "-o", self.folder / "events.tsv", "--overwrite").stderr.splitlines()
+        doubts = [line for line in lines if ("table.csv" in line or "read.csv" in line) and "guessed from its steps" not in line]
         what = "refused" if result.returncode else "right" if true == said else "named" if doubts else "alike" if is_alike else "silent"
         self.counts[what] = self.counts.get(what, 0) + 1
         if what == "silent":
@@ -81,7 +94,7 @@ class Readings:
                 # Plain pixels of a stated display are certain; from the bottom left nothing tells them apart.
                 self.judge(name, true, "px" if true == "px" else "", [], true == "px from the bottom left")
                 for said, (_, statement) in PLACES.items():
-                    self.judge(name, true, said, statement, any(true in pair and said in pair for pair in ALIKE))
+                    self.judge(name, true, said, statement, are_alike(name, true, said))
 
     def heads(self):
         for name in HEADS:
@@ -90,7 +103,7 @@ class Readings:
                 self.table("t[ns],dir_x,dir_y,dir_z", [(t, *turn(x, y, z)) for t, x, y, z in rows])
                 self.judge(name, true, "gl" if true == "gl" else "", [], False)
                 for said in AXES:
-                    self.judge(name, true, said, ["--axes", said], any(true in pair and said in pair for pair in ALIKE))
+                    self.judge(name, true, said, ["--axes", said], are_alike(name, true, said))
 
 
 def main():

@@ -97,6 +97,19 @@ TEST_F(GazeJudge, CentredPixels) {
   expect_true(read(text));
 }
 
+// Two monitors beside each other, and the eye on the one that is not at the origin.
+TEST_F(GazeJudge, TheOtherMonitor) {
+  for (const int left : {1920, -1920}) {
+    const std::string text = table("t[s],x[px],y[px]", [&](const Vec2d& p) {
+      return fmt::format("{:.1f},{:.1f}", 1920 * p.x + left, 1080 * p.y);
+    });
+    options_.corner.reset();
+    expect_refused(text, fmt::format("`corner` {},0", left));
+    options_.corner = Vec2d{static_cast<double>(left), 0};
+    expect_true(read(text));
+  }
+}
+
 TEST_F(GazeJudge, VectorsByTheColumnBesideThem) {
   const auto vector = [](const Vec2d& p, const char* pattern) {
     const Vec3d d = normalize(Vec3d{p.x - 0.5, 0.5 - p.y, 1});
