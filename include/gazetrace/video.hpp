@@ -70,8 +70,9 @@ DisplayImage side_by_side(const DisplayImage& left, const DisplayImage& right);
 using Rgb8Color = std::array<std::uint8_t, 3>;
 inline constexpr Rgb8Color kGazeColor{255, 210, 63};
 
-// Draws a dot with a dark and a light rim at a continuous pixel position; parts outside the picture are cut off.
-void draw_gaze_dot(DisplayImage& image, const Vec2d& gaze_px, double radius_px);
+// Draws a ring with a dark rim about a continuous pixel position, which leaves visible what is looked at; parts outside
+// the picture are cut off.
+void draw_gaze_ring(DisplayImage& image, const Vec2d& gaze_px, double radius_px, double width_px);
 // Draws the line where the eccentricity from the gaze is `eccentricity_deg`, as the view shows it.
 void draw_eccentricity_ring(DisplayImage& image, const PlanarView& view, const Vec2d& gaze_px, double eccentricity_deg,
                             double width_px);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "gazetrace/video.hpp"
 
@@ -76,10 +77,16 @@ DisplayImage side_by_side(const DisplayImage& left, const DisplayImage& right) {
   return both;
 }
 
-void draw_gaze_dot(DisplayImage& image, const Vec2d& gaze_px, double radius_px) {
-  draw_disc(image, gaze_px, 1.5 * radius_px, kBlack);
-  draw_disc(image, gaze_px, 1.25 * radius_px, kWhite);
-  draw_disc(image, gaze_px, radius_px, kGazeColor);
+void draw_gaze_ring(DisplayImage& image, const Vec2d& gaze_px, double radius_px, double width_px) {
+  for (const auto& [color, width] : {std::pair{kBlack, 2 * width_px}, std::pair{kGazeColor, width_px}}) {
+    around(image, gaze_px, radius_px + width + 1, [&, &color = color, width = width](int x, int y) {
+      const double distance = std::hypot(x + 0.5 - gaze_px.x, y + 0.5 - gaze_px.y);
+      const double coverage = std::clamp(width / 2 + 0.5 - std::fabs(distance - radius_px), 0.0, 1.0);
+      if (coverage > 0) {
+        blend(image, x, y, color, coverage);
+      }
+    });
+  }
 }
 
 void draw_eccentricity_ring(DisplayImage& image, const PlanarView& view, const Vec2d& gaze_px, double eccentricity_deg,

@@ -97,10 +97,10 @@ class Video(harness.CliTest):
         self.run_ok("video", "fov/p.####.png", "-o", "png.mkv", "--codec", "ffv1")
         for from_png, from_exr in zip(self.pixels("png.mkv", 128, 72), plain, strict=True):
             self.assertLessEqual(max(abs(a - b) for a, b in zip(from_png, from_exr, strict=True)), 1)
-        # The dot moves with the gaze: 0.2 + 0.6 t, t in the middle of a frame, the last sample before it.
+        # The ring moves with the gaze: 0.2 + 0.6 t, t in the middle of a frame, the last sample before it.
         self.run_ok("video", "fov/p.####.exr", "-o", "gaze.mkv", "--codec", "ffv1", "--show-gaze")
-        for n, (with_dot, without) in enumerate(zip(self.pixels("gaze.mkv", 128, 72), plain)):
-            differing = [i // 3 % 128 for i in range(0, len(without), 3) if with_dot[i:i + 3] != without[i:i + 3]]
+        for n, (with_ring, without) in enumerate(zip(self.pixels("gaze.mkv", 128, 72), plain)):
+            differing = [i // 3 % 128 for i in range(0, len(without), 3) if with_ring[i:i + 3] != without[i:i + 3]]
             t = (n + 0.5) * 1001 / 30000
             self.assertAlmostEqual(sum(differing) / len(differing) + 0.5, 128 * (0.2 + 0.6 * t), delta=1.5)
         # Display pictures know the gaze as well.

@@ -161,7 +161,7 @@ class FrameMaker {
                          view ? 1 / (view->step_x * kDegPerRad) : kDefaultPixelsPerDegree * image.width_px / 1280.0);
     }
     if (arguments_.show_gaze) {
-      draw_gaze_dot(image, *gaze_px, 4 * unit_px);
+      draw_gaze_ring(image, *gaze_px, 10 * unit_px, 1.5 * unit_px);
     }
   }
 
@@ -239,7 +239,7 @@ OptionSchema<VideoArguments> video_schema() {
   schema.value("--ffmpeg", at(&VideoArguments::video, &VideoSettings::program), "PROGRAM", "The ffmpeg program");
   schema.flag("--overwrite", &VideoArguments::overwrite, "Replaces the file when it is there");
   schema.group("Marks");
-  schema.flag("--show-gaze", &VideoArguments::show_gaze, "Draws a dot at the true gaze");
+  schema.flag("--show-gaze", &VideoArguments::show_gaze, "Draws a ring about the true gaze");
   schema.flag("--show-rings", &VideoArguments::show_rings, "Draws where the regions end");
   schema.flag("--fixation-mark", &VideoArguments::fixation_mark,
               "Draws a mark to look at where the viewer looked (0.6 degrees; Thaler et al. 2013)");

@@ -27,16 +27,18 @@ constexpr Rgb8Color kGray{128, 128, 128};
 constexpr Rgb8Color kBlack{0, 0, 0};
 constexpr Rgb8Color kWhite{255, 255, 255};
 
-TEST(VideoDraw, DotLiesAtTheGaze) {
+TEST(VideoDraw, RingLiesAboutTheGaze) {
   DisplayImage image = gray(64, 48);
-  draw_gaze_dot(image, {20.5, 30.5}, 4);
-  EXPECT_EQ(at(image, 20, 30), kGazeColor);
-  EXPECT_EQ(at(image, 20 + 3, 30), kGazeColor);
-  // Rims: light to 5 px, dark to 6 px from the middle.
-  EXPECT_EQ(at(image, 20, 30 - 7), kGray);
-  EXPECT_EQ(at(image, 20 + 7, 30), kGray);
+  draw_gaze_ring(image, {20.5, 30.5}, 6, 2);
+  EXPECT_EQ(at(image, 20 + 6, 30), kGazeColor);
+  EXPECT_EQ(at(image, 20, 30 - 6), kGazeColor);
+  // What the eye looks at is seen, as is everything beyond the rim, which ends 2 px from the line's middle.
+  for (const int apart : {0, 1, 2, 9}) {
+    EXPECT_EQ(at(image, 20 + apart, 30), kGray) << apart;
+    EXPECT_EQ(at(image, 20, 30 - apart), kGray) << apart;
+  }
   DisplayImage mirrored = gray(64, 48);
-  draw_gaze_dot(mirrored, {64 - 20.5, 30.5}, 4);
+  draw_gaze_ring(mirrored, {64 - 20.5, 30.5}, 6, 2);
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x < 64; ++x) {
       EXPECT_EQ(at(image, x, y), at(mirrored, 63 - x, y));
@@ -48,7 +50,7 @@ TEST(VideoDraw, MarksBeyondThePictureAreCutOff) {
   for (const Vec2d& gaze : {Vec2d{-3, 10}, Vec2d{63.9, 47.9}, Vec2d{1e9, -1e9}, Vec2d{std::nan(""), 3}}) {
     DisplayImage image = gray(64, 48);
     const PlanarView view = view_of_perspective(0.8, 64, 48);
-    draw_gaze_dot(image, gaze, 5);
+    draw_gaze_ring(image, gaze, 5, 1);
     draw_fixation_mark(image, gaze, 20);
     draw_eccentricity_ring(image, view, gaze, 5, 1);
     EXPECT_EQ(image.bytes.size(), gray(64, 48).bytes.size());
