@@ -168,4 +168,11 @@ std::vector<std::string> density_picture_files(const FoveationSettings& settings
 SamplingMap planned_sampling_map(const FoveationSettings& settings, const FrameRequest& request, std::uint64_t seed,
                                  int threads = 0);
 
+// Samples a pixel of such a frame on average, and where the eye looks; twice the same without gaze.
+struct PlannedRates {
+  double mean_spp = 0, most_spp = 0;
+};
+PlannedRates planned_rates(const FoveationSettings& settings, const FrameRequest& request, std::uint64_t seed,
+                           int threads = 0);
+
 }  // namespace gazetrace

@@ -26,6 +26,7 @@ struct ScreenSettings {
 
 // Where the samples go, and what options say of samplings while another one is chosen.
 struct SamplingSettings : FoveationSettings {
+  SamplingSettings() { sampling = DensitySampling(); }
   RegionSampling unused_regions;
   DensitySampling unused_density;
 };
@@ -102,8 +103,9 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   // How it is rendered
   SamplingSettings foveation;
   TraceSettings trace;
-  std::string filter = "auto";    // filter_of() says which filter that is
-  AccumulateSettings accumulate;  // how many frames are read follows from the times below
+  std::string filter = "auto";  // filter_of() says which filter that is
+  AccumulateSettings accumulate{
+      .mode = AccumulateMode::automatic};  // how many frames are read follows from the times below
   DurationNs accumulate_past{250'000'000}, accumulate_future{250'000'000};
   std::optional<PixelIndex> only_pixel;
   int threads = 0;

@@ -151,7 +151,7 @@ GAZETRACE_ENUM_NAMES(UnorderedPolicy, "policy for unordered stamps", {E::error, 
 GAZETRACE_ENUM_NAMES(DiffuseModel, "diffuse model", {E::burley, "burley"}, {E::lambert, "lambert"}, {E::matte, "matte"})
 GAZETRACE_ENUM_NAMES(LightSampling, "light sampling", {E::mis, "mis"}, {E::light_only, "light"}, {E::bsdf_only, "bsdf"})
 GAZETRACE_ENUM_NAMES(PixelFilter, "pixel filter", {E::box, "box"}, {E::blackman_harris, "blackman-harris"})
-GAZETRACE_ENUM_NAMES(AccumulateMode, "accumulation", {E::off, "off"}, {E::window, "window"})
+GAZETRACE_ENUM_NAMES(AccumulateMode, "accumulation", {E::automatic, "auto"}, {E::off, "off"}, {E::window, "window"})
 GAZETRACE_ENUM_NAMES(ExrPixels, "EXR pixel type", {E::half, "half"}, {E::float32, "float"})
 GAZETRACE_ENUM_NAMES(ExrParts, "parts of an EXR", {E::single, "single"}, {E::multi, "multi"})
 #undef GAZETRACE_ENUM_NAMES

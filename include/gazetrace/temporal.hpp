@@ -6,12 +6,13 @@
 
 namespace gazetrace {
 
-// off: every frame stands for itself. window: a frame is reconstructed from its own samples and from those of the
-// frames around it, joined where they saw the same places (src/temporal/join_window.hpp). Nothing is accumulated from
-// frame to frame: a picture is a function of its request and of the samples of its window. Frames that are still to
-// come are known only where whole sequences are rendered: a window with a future is not causal, and nobody could be
+// off: every frame stands for itself. automatic: window where a job has more than one frame, off for a single still;
+// resolve() decides, and nothing else knows it. window: a frame is reconstructed from its own samples and from those of
+// the frames around it, joined where they saw the same places (src/temporal/join_window.hpp). Nothing is accumulated
+// from frame to frame: a picture is a function of its request and of the samples of its window. Frames that are still
+// to come are known only where whole sequences are rendered: a window with a future is not causal, and nobody could be
 // shown such a picture while looking.
-enum class AccumulateMode : std::uint8_t { off, window };
+enum class AccumulateMode : std::uint8_t { off, window, automatic };
 
 struct AccumulateSettings {
   AccumulateMode mode = AccumulateMode::off;

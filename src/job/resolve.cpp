@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "gazetrace/error.hpp"
@@ -72,15 +74,16 @@ void load_scene_of(const JobSettings& job, const ResolveOptions& options, Resolv
   append(resolved.warnings, resolved.scene->environment.warnings);
 }
 
-// Whether the scene's animation may decide how many frames are wanted, or how many are judged.
+// The same job for the whole sequence, whichever of its frames are wanted.
+JobSettings of_whole_sequence(JobSettings job) {
+  job.frames.reset();
+  return job;
+}
+
+// Whether the scene's animation may decide how many frames are wanted, how many are judged, or whether they join.
 bool length_needs_scene(const JobSettings& job, const CameraPath& camera, const GazeLog* log) {
-  if (!judges_sequence(job)) {
-    return may_follow_scene(job, camera, log);
-  }
-  // The whole sequence is judged, whichever of its frames are wanted.
-  JobSettings whole = job;
-  whole.frames.reset();
-  return may_follow_scene(whole, camera, log);
+  const bool asks_whole = judges_sequence(job) || job.accumulate.mode == AccumulateMode::automatic;
+  return asks_whole ? may_follow_scene(of_whole_sequence(job), camera, log) : may_follow_scene(job, camera, log);
 }
 
 const Scene* scene_of(const ResolveOptions& options, const ResolvedJob& resolved) {
@@ -113,11 +116,52 @@ std::string sampling_without_gaze(const FoveationSettings& foveation) {
   return rate + " everywhere: there is no gaze";
 }
 
+// A single frame of a sequence joins as it does in the whole of it, so that it is the same picture.
+void settle_accumulation(const ViewInputs& inputs, ResolvedJob& resolved) {
+  JobSettings& job = resolved.job.settings;
+  if (job.accumulate.mode != AccumulateMode::automatic) {
+    return;
+  }
+  // So many pixels of a window at most, which take some 4 GB, whatever the machine has.
+  constexpr double kMostPixels = 1 << 24;
+  bool is_sequence = resolved.frames.size() > 1;
+  if (!is_sequence && job.frames) {
+    std::string unused;
+    is_sequence =
+        choose_frames(of_whole_sequence(job), inputs.camera, inputs.log, inputs.taken_off_ns, inputs.scene, unused)
+            .size() > 1;
+  }
+  job.accumulate.mode = is_sequence ? AccumulateMode::window : AccumulateMode::off;
+  if (!is_sequence) {
+    return;
+  }
+  const double most = std::max(std::floor((kMostPixels / job.size.width / job.size.height - 1) / 2), 1.0);
+  const auto most_ns = static_cast<std::int64_t>(
+      std::ceil(most * 1e9 * static_cast<double>(job.fps.denominator) / static_cast<double>(job.fps.numerator)));
+  job.accumulate_past.ns = std::min(job.accumulate_past.ns, most_ns);
+  job.accumulate_future.ns = std::min(job.accumulate_future.ns, most_ns);
+  const AccumulateSettings window = accumulate_of(job);
+  resolved.decisions.emplace_back("accumulate", fmt::format("window: each frame joins {} before it and {} after it",
+                                                            window.past_frames, window.future_frames));
+}
+
+// About the gaze the frame's mean is given and not the rate of the gaze, which the screen's pixels a degree decide.
+void settle_rate(const GazeLog* log, JobSettings& job) {
+  constexpr double kUsualMeanSpp = 2;
+  const auto* const density = std::get_if<DensitySampling>(&job.foveation.sampling);
+  if (log != nullptr && density != nullptr && !density->from_picture && !job.foveation.spp &&
+      !job.foveation.target.is_given()) {
+    job.foveation.spp = kUsualMeanSpp;
+  }
+}
+
 void choose_wanted_frames(const ViewInputs& inputs, ResolvedJob& resolved) {
   const JobSettings& job = resolved.job.settings;
   std::string decision;
   resolved.frames = choose_frames(job, inputs.camera, inputs.log, inputs.taken_off_ns, inputs.scene, decision);
   resolved.decisions.emplace_back("frames", decision);
+  settle_accumulation(inputs, resolved);
+  settle_rate(inputs.log, resolved.job.settings);
   if (inputs.log == nullptr && !follows_picture(job.foveation.sampling)) {
     resolved.decisions.emplace_back("sampling", sampling_without_gaze(job.foveation));
   }
@@ -155,20 +199,14 @@ void warn_of_filter(const JobSettings& job, Warnings& warnings) {
   }
 }
 
-// Of a setting whose meaning changed in this version, and which was not given by its former name.
+// Of a setting whose meaning changed in this version, and which was not given by its former name. What it is for a
+// density stands in the line on sampling.
 void warn_of_mean_rate(const Job& job, Warnings& warnings) {
   const FoveationSettings& foveation = job.settings.foveation;
   const auto source = job.sources.find("spp");
   const OptionSource given = source == job.sources.end() ? OptionSource() : source->second;
-  if (!foveation.spp || !given.former.empty()) {
-    return;
-  }
-  if (std::holds_alternative<DensitySampling>(foveation.sampling) && !follows_picture(foveation.sampling)) {
-    warnings.push_back(
-        fmt::format("`spp` {} is the mean of a frame; it was the full rate of a density before, which the "
-                    "place has that the eye looks at",
-                    *foveation.spp));
-  } else if (regions_of(foveation.sampling) != nullptr && given.origin == Origin::file) {
+  if (foveation.spp && given.former.empty() && regions_of(foveation.sampling) != nullptr &&
+      given.origin == Origin::file) {
     warnings.push_back(
         fmt::format("`spp` {} of {} is the mean of a frame, to which the counts of regions are scaled; "
                     "it meant nothing to regions before",
@@ -186,7 +224,11 @@ void warn_of_inputs(const CameraPath& camera, const GazeLog* log, ResolveScope s
   }
   append(resolved.warnings, resolved.plan.warnings);
   if (scope != ResolveScope::digests) {
-    append(resolved.warnings, saving_warnings(job, resolved.plan));
+    const SamplingNotes notes = sampling_notes(resolved.job, resolved.plan);
+    append(resolved.warnings, notes.warnings);
+    if (!notes.decision.empty()) {
+      resolved.decisions.emplace_back("sampling", notes.decision);
+    }
   }
 }
 
@@ -221,6 +263,7 @@ void set_pipeline(ResolveScope scope, ResolvedJob& resolved) {
     resolved.decisions.emplace_back("max-block", "1, so that the samples of frames at rest can be added up");
   }
   if (scope == ResolveScope::render) {
+    check_frame_memory(job);
     check_output_settings(resolved.pipeline.output, resolved.frames.size() > 1);
   }
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr double kLeastSaving = 1.1;
 
 bool is_known_before(const FoveationSettings& foveation) {
-  return traits_of(foveation.sampling).needs_gaze && !foveation.target.is_given() && !foveation.spp;
+  return traits_of(foveation.sampling).needs_gaze && !foveation.target.is_given();
 }
 
 std::string name_of(const Sampling& sampling) {
@@ -22,8 +22,8 @@ std::string name_of(const Sampling& sampling) {
   return density == nullptr ? "`sampling` " + to_string(sampling) : "`density` " + to_string(*density);
 }
 
-std::string remedies(const JobSettings& job) {
-  if (regions_of(job.foveation.sampling) != nullptr) {
+std::string remedies(const Sampling& sampling) {
+  if (regions_of(sampling) != nullptr) {
     return "smaller `region-eccentricities`, or a `screen` that fills more of the field of view, would change that";
   }
   return "a larger `size`, a `density` such as acuity:relative-to=fovea or `sampling` regions would change that";
@@ -31,27 +31,34 @@ std::string remedies(const JobSettings& job) {
 
 }  // namespace
 
-Warnings saving_warnings(const JobSettings& job, const FramePlan& plan) {
-  const FoveationSettings& foveation = job.foveation;
+SamplingNotes sampling_notes(const Job& job, const FramePlan& plan) {
+  const FoveationSettings& foveation = job.settings.foveation;
   const auto frame = std::find_if(plan.frames.begin(), plan.frames.end(), [](const FrameRequest& request) {
     return request.gaze_direction_render.has_value();
   });
   if (!is_known_before(foveation) || frame == plan.frames.end()) {
     return {};
   }
-  const RegionSampling* const regions = regions_of(foveation.sampling);
-  const double full_rate = regions != nullptr ? regions->samples[0] : kUsualSpp;
-  const SamplingMap map = planned_sampling_map(foveation, *frame, job.trace.seed, job.threads);
-  const double all = full_rate * frame->width_px * frame->height_px;
-  const double saving = all / std::max(1.0, static_cast<double>(map.samples()));
+  const PlannedRates rates = planned_rates(foveation, *frame, job.settings.trace.seed, job.settings.threads);
+  const double saving = rates.most_spp / rates.mean_spp;
+  SamplingNotes notes;
+  notes.decision = fmt::format("{}: {:.3g} samples a pixel in frame {}, {:.3g} where the eye looks",
+                               name_of(foveation.sampling), rates.mean_spp, frame->frame, rates.most_spp);
   if (saving >= kLeastSaving) {
-    return {};
+    return notes;
   }
-  return {
+  const double pixels_a_degree = 1 / (frame->view.step_x * kDegPerRad);
+  if (!job.sources.contains("sampling")) {
+    notes.decision += fmt::format(
+        "; nearly uniform, since at {:.1f} pixels a degree the eye resolves nearly all of them", pixels_a_degree);
+    return notes;
+  }
+  notes.warnings.push_back(
       fmt::format("{} saves only {:.2f} times the samples in frame {}: at {}x{} a degree has {:.1f} pixels, "
                   "and nearly all of them keep their full rate; {}",
-                  name_of(foveation.sampling), saving, frame->frame, frame->width_px, frame->height_px,
-                  1 / (frame->view.step_x * kDegPerRad), remedies(job))};
+                  name_of(foveation.sampling), saving, frame->frame, frame->width_px, frame->height_px, pixels_a_degree,
+                  remedies(foveation.sampling)));
+  return notes;
 }
 
 }  // namespace gazetrace

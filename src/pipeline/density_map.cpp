@@ -38,4 +38,21 @@ SamplingMap planned_sampling_map(const FoveationSettings& settings, const FrameR
   return make_sampling_map(settings, request.view, request.gaze_direction_render, context);
 }
 
+PlannedRates planned_rates(const FoveationSettings& settings, const FrameRequest& request, std::uint64_t seed,
+                           int threads) {
+  if (!traits_of(settings.sampling).needs_gaze || !request.gaze_direction_render) {
+    const double spp = settings.spp.value_or(kUsualSpp);
+    return {spp, spp};
+  }
+  const RegionSampling* const regions = regions_of(settings.sampling);
+  const double own_most = regions != nullptr ? regions->samples[0] : kUsualSpp;
+  // By the sampling's own counts, to which `spp` is in proportion.
+  FoveationSettings own_rates = settings;
+  own_rates.spp.reset();
+  const auto own_samples = static_cast<double>(planned_sampling_map(own_rates, request, seed, threads).samples());
+  const double own_mean = std::max(1.0, own_samples) / (static_cast<double>(request.width_px) * request.height_px);
+  const double mean = settings.spp.value_or(own_mean);
+  return {mean, mean * own_most / own_mean};
+}
+
 }  // namespace gazetrace

@@ -50,7 +50,7 @@ class FormerOptions(harness.CliTest):
         self.write("job.toml", "spp = 32\nbudget-spp = 2\n")
         self.assert_refused(["render", "box.gltf", "--config", "job.toml"], ["job.toml", *words])
         self.assertEqual(self.settings("--budget-spp", "2", "--spp", "2")[0]["spp"], "2")
-        self.write("job.toml", "spp = 32\n")
+        self.write("job.toml", "sampling = 'regions'\nspp = 32\n")
         self.assertEqual(self.settings("--config", "job.toml", "--budget-spp", "2")[0]["spp"], "2")
         self.assert_refused(["render", "box.gltf", "--density", "mar", "--falloff", "csf"], ["--falloff, which makes --density csf", "--density mar"])
 
@@ -66,11 +66,10 @@ class FormerOptions(harness.CliTest):
 
     def test_the_mean_is_told_of_only_where_its_meaning_changed(self):
         job = ["plan", "--counts", "--gaze-at", "0.5,0.5", "--size", "64x36", "--screen", "paper"]
-        told = "was the full rate"
-        self.assertIn(told, self.run_ok(*job, "--density", "mar", "--spp", "2").stderr)
-        self.assertNotIn(told, self.run_ok(*job, "--density", "mar", "--budget-spp", "2").stderr)
-        self.write("job.toml", "spp = 32\n")
-        self.assertIn("--spp 32 of job.toml:1 is the mean of a frame", self.run_ok(*job, "--config", "job.toml").stderr)
+        said = self.run_ok(*job, "--density", "mar", "--spp", "2").stderr
+        self.assertRegex(said, r"sampling: --density mar: 2 samples a pixel in frame 1, [0-9.]+ where the eye looks")
+        self.write("job.toml", "sampling = 'regions'\nspp = 32\n")
+        self.assertIn("--spp 32 of job.toml:2 is the mean of a frame", self.run_ok(*job, "--config", "job.toml").stderr)
         self.assertNotIn("mean of a frame", self.run_ok(*job, "--spp", "32").stderr)
 
     def test_commands_that_have_no_such_option(self):

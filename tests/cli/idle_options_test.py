@@ -18,7 +18,7 @@ class IdleOptions(harness.CliTest):
 
     def warnings(self, *arguments):
         lines = self.run_ok("plan", "--counts", "--json", *arguments).stderr.splitlines()
-        lines = [line for line in lines if not line.startswith("replaced ")]  # decisions, which config_test.py looks at
+        lines = [line for line in lines if not line.startswith(("replaced ", "sampling: "))]  # decisions, which config_test.py looks at
         for line in lines:
             self.assertTrue(line.startswith("gazetrace: warning: "), line)
         return [line.removeprefix("gazetrace: warning: ") for line in lines]
@@ -29,10 +29,10 @@ class IdleOptions(harness.CliTest):
 
     def test_what_does_nothing_is_said(self):
         for options, others in (
-            (["--accumulate-past", "0.2s"], []),
-            (["--accumulate-future", "0.2s"], []),
-            (["--block-samples", "4"], []),
-            (["--max-block", "4"], []),
+            (["--accumulate-past", "0.2s"], ["--accumulate", "off"]),
+            (["--accumulate-future", "0.2s"], ["--accumulate", "off"]),
+            (["--block-samples", "4"], ["--sampling", "regions"]),
+            (["--max-block", "4"], ["--sampling", "regions"]),
             (["--max-block", "4"], ["--sampling", "uniform"]),
             (["--region-samples", "4,4,4"], ["--density", "mar"]),
             (["--region-eccentricities", "2,5"], ["--density", "mar"]),

@@ -33,6 +33,7 @@ struct PlanArguments {
 struct FrameCounts {
   std::int32_t frame = 0;
   std::vector<MapRegion> regions;
+  double uniform_spp = 0;  // the rate where the eye looks
   double uniform_samples = 0, nominal_samples = 0;
   std::uint64_t traced_samples = 0;
 
@@ -49,14 +50,15 @@ FrameCounts count_samples(const FrameRequest& request, const JobSettings& job) {
   counts.frame = request.frame;
   counts.regions = map.regions;
   counts.traced_samples = map.samples();
+  counts.uniform_spp = planned_rates(settings, request, job.trace.seed, job.threads).most_spp;
   for (const MapRegion& region : map.regions) {
-    counts.uniform_samples += static_cast<double>(region.pixels) * settings.spp.value_or(kUsualSpp);
+    counts.uniform_samples += static_cast<double>(region.pixels) * counts.uniform_spp;
     counts.nominal_samples += region.nominal_samples;
   }
   return counts;
 }
 
-std::string counts_as_table(const std::vector<FrameCounts>& frames, double uniform_spp) {
+std::string counts_as_table(const std::vector<FrameCounts>& frames) {
   std::string text;
   for (const FrameCounts& counts : frames) {
     text += fmt::format("frame {}\n  {:<14}{:>12}{:>12}{:>16}{:>14}\n", counts.frame, "region", "pixels", "sites",
@@ -67,7 +69,7 @@ std::string counts_as_table(const std::vector<FrameCounts>& frames, double unifo
     }
     text += fmt::format("  {:<14}{:>12}{:>12}{:>16.2f}{:>14}\n", "all", "", "", counts.nominal_samples,
                         counts.traced_samples);
-    text += fmt::format("  {:<38}{:>16.2f}{:>14.2f}\n", fmt::format("ratio to uniform {} spp", uniform_spp),
+    text += fmt::format("  {:<38}{:>16.2f}{:>14.2f}\n", fmt::format("ratio to uniform {:.4g} spp", counts.uniform_spp),
                         counts.nominal_ratio(), counts.traced_ratio());
   }
   return text +
@@ -76,7 +78,7 @@ std::string counts_as_table(const std::vector<FrameCounts>& frames, double unifo
          "them\n";
 }
 
-std::string counts_as_json(const std::vector<FrameCounts>& frames, double uniform_spp) {
+std::string counts_as_json(const std::vector<FrameCounts>& frames) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const FrameCounts& counts : frames) {
     nlohmann::ordered_json regions = nlohmann::ordered_json::array();
@@ -89,7 +91,7 @@ std::string counts_as_json(const std::vector<FrameCounts>& frames, double unifor
                          {"traced_samples", region.samples}});
     }
     json.push_back({{"frame", counts.frame},
-                    {"uniform_spp", uniform_spp},
+                    {"uniform_spp", counts.uniform_spp},
                     {"uniform_samples", counts.uniform_samples},
                     {"nominal_samples", counts.nominal_samples},
                     {"traced_samples", counts.traced_samples},
@@ -148,22 +150,23 @@ void check_counts_are_known(const FoveationSettings& foveation) {
 }
 
 int run_plan(const PlanArguments& arguments) {
-  const JobSettings& job = arguments.job.settings;
+  const JobSettings& asked = arguments.job.settings;
   check_job(arguments.job);
-  if (job.scene.empty() && job.camera_path.empty() && !job.camera_from_gaze && !job.eye && !arguments.counts &&
+  if (asked.scene.empty() && asked.camera_path.empty() && !asked.camera_from_gaze && !asked.eye && !arguments.counts &&
       !arguments.model_gain && arguments.chunks == 0) {
     throw Error(ErrorKind::usage, "", "no scene and no camera were given",
                 "name a scene, or give --camera-path or --eye and --target");
   }
   if (arguments.counts && arguments.chunks == 0) {
-    check_counts_are_known(job.foveation);
+    check_counts_are_known(asked.foveation);
   }
   ResolveOptions resolving;
   resolving.scope = ResolveScope::plan;
   const ResolvedJob resolved = resolve(arguments.job, resolving);
+  const JobSettings& job = resolved.job.settings;
   print_warnings(resolved.warnings);
   for (const auto& [name, text] : resolved.decisions) {
-    if (name.starts_with("replaced ") || name == "accumulate") {
+    if (name.starts_with("replaced ") || name == "accumulate" || name == "sampling") {
       std::fprintf(stderr, "%s: %s\n", name.c_str(), with_flags(text).c_str());
     }
   }
@@ -201,8 +204,7 @@ int run_plan(const PlanArguments& arguments) {
   for (const FrameRequest& request : resolved.plan.frames) {
     counts.push_back(count_samples(request, job));
   }
-  const double spp = job.foveation.spp.value_or(kUsualSpp);
-  arguments.json.print(counts_as_table(counts, spp), [&] { return counts_as_json(counts, spp); });
+  arguments.json.print(counts_as_table(counts), [&] { return counts_as_json(counts); });
   return exit_done;
 }
 
@@ -214,7 +216,8 @@ Command add_plan_command(CLI::App& app, const Invocation& /*invocation*/) {
   use_job_help(app, "gazetrace plan --counts --gaze-at 0.4,0.5 --screen paper --size 480x270");
   app.footer(std::string(kConfigHelp) + kExitCodesHelp);
   app.add_flag("--counts", arguments->counts,
-               "Samples per region, nominal and traced, and their ratio to uniform --spp; needs no scene");
+               "Samples per region, nominal and traced, and their ratio to uniform frames of the rate where the eye "
+               "looks; needs no scene");
   app.add_flag("--model-gain", arguments->model_gain,
                "What eccentricity alone can save on this screen with this gaze, in samples at equal visible error, by "
                "FovVideoVDP's model; content and masking are left out; needs no scene")

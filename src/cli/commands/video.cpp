@@ -92,9 +92,13 @@ const JobSettings* foveated_run(const CompareInputs& inputs) {
   return nullptr;
 }
 
+// Where regions end; about densities, which end nowhere, a scale.
 std::vector<double> ring_angles_deg(const JobSettings* run) {
-  const RegionSampling* const regions = run == nullptr ? nullptr : regions_of(run->foveation.sampling);
-  return regions == nullptr ? std::vector<double>()
+  if (run == nullptr) {
+    return {};
+  }
+  const RegionSampling* const regions = regions_of(run->foveation.sampling);
+  return regions == nullptr ? std::vector{5.0, 10.0, 20.0}
                             : std::vector(regions->eccentricities_deg.begin(), regions->eccentricities_deg.end());
 }
 
@@ -106,9 +110,10 @@ class FrameMaker {
         rings_deg_(ring_angles_deg(foveated_run(inputs))),
         color_(compare_color(arguments.job, inputs)) {
     if (arguments.show_rings && (rings_deg_.empty() || !inputs.screen)) {
-      throw Error(ErrorKind::usage, "--show-rings",
-                  rings_deg_.empty() ? "no run record beside the pictures tells of regions" : "the screen is not known",
-                  rings_deg_.empty() ? "leave it out" : "give --screen");
+      throw Error(
+          ErrorKind::usage, "--show-rings",
+          rings_deg_.empty() ? "no run record beside the pictures tells of a run with gaze" : "the screen is not known",
+          rings_deg_.empty() ? "leave it out" : "give --screen");
     }
   }
 
@@ -240,7 +245,8 @@ OptionSchema<VideoArguments> video_schema() {
   schema.flag("--overwrite", &VideoArguments::overwrite, "Replaces the file when it is there");
   schema.group("Marks");
   schema.flag("--show-gaze", &VideoArguments::show_gaze, "Draws a ring about the true gaze");
-  schema.flag("--show-rings", &VideoArguments::show_rings, "Draws where the regions end");
+  schema.flag("--show-rings", &VideoArguments::show_rings,
+              "Draws where the regions end, or else 5, 10 and 20 degrees from the gaze");
   schema.flag("--fixation-mark", &VideoArguments::fixation_mark,
               "Draws a mark to look at where the viewer looked (0.6 degrees; Thaler et al. 2013)");
   schema.group("Frames and gaze");

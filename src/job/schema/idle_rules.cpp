@@ -44,7 +44,7 @@ JobIdleRule without_regions() {
 
 JobIdleRule without_window() {
   return {"without `accumulate` window",
-          [](const JobSettings& job) { return job.accumulate.mode != AccumulateMode::window; }};
+          [](const JobSettings& job) { return job.accumulate.mode == AccumulateMode::off; }};
 }
 
 JobIdleRule without_aov(const std::string& name) {

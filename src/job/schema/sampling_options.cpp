@@ -129,7 +129,9 @@ void add_sampling_choice(JobSchema& schema) {
           .value("--sampling", foveation(&FoveationSettings::sampling), names_of_samplings(), Touch::sampling,
                  "Where samples go: the same everywhere; in three regions about the gaze; by --density; or where a "
                  "pilot of the frame finds noise. The paper's readings are regions:shape=disc or disc-by-radius, and "
-                 "regions:unit=pixel. Where nothing names one, --target-jod and --target-relmse take adaptive")
+                 "regions:unit=pixel. Where nothing names one, --target-jod and --target-relmse take adaptive, and "
+                 "what is "
+                 "said of regions takes regions")
           .with(Trait::always_stated)
           .idle_when({without_any_gaze})
           .with(Trait::everyday);
@@ -137,7 +139,7 @@ void add_sampling_choice(JobSchema& schema) {
   schema
       .value("--spp", foveation(&FoveationSettings::spp), "SAMPLES", Touch::sampling,
              "Samples a pixel on average over a frame, whatever the sampling; a fraction is possible. Where it is not "
-             "given, regions have their own counts, pictures state theirs, densities have 32 where they are 1, and all "
+             "given, regions have their own counts, pictures state theirs, densities about the gaze have 2, and all "
              "else has 32")
       .above(0, kMostSamples)
       .with(Trait::everyday);

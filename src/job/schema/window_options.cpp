@@ -12,7 +12,8 @@ void add_window_options(JobSchema& schema) {
           Touch::window,
           "window: each frame is reconstructed from its own samples and those of the frames around it, joined where "
           "they saw the same places of surfaces that move along with camera, bodies and shapes; what has changed its "
-          "light meanwhile does not join")
+          "light meanwhile does not join. auto: window, of at most 16 million pixels in all, but "
+          "off for a single still")
       .with(Trait::always_stated);
   schema
       .value("--accumulate-past", &JobSettings::accumulate_past, "DURATION", Touch::window,

@@ -299,6 +299,8 @@ TEST(JobSchema, WhatPresetsSetExists) {
 TEST(IdleOptions, AreThoseThatWereGivenAndDoNothing) {
   Job job;
   set_option(job, "accumulate-past", "0.2s");
+  EXPECT_TRUE(idle_option_warnings(job).empty()) << "a sequence may come";
+  set_option(job, "accumulate", "off");
   EXPECT_EQ(idle_option_warnings(job), Warnings{"`accumulate-past` does nothing without `accumulate` window"});
   set_option(job, "accumulate", "window");
   EXPECT_TRUE(idle_option_warnings(job).empty());

@@ -56,7 +56,8 @@ TEST(OptionTable, EachRowHasAPlaceOfItsOwn) {
     }
     ++tried;
     for (const OptionOf<JobSettings>& other : job_schema().options()) {
-      if (&other != &option) {
+      // A density is said only while it is chosen.
+      if (&other != &option && !(option.name == "sampling" && other.name == "density")) {
         EXPECT_EQ(other.values(settings), other.defaults) << option.name << " changes " << other.name;
       }
     }
