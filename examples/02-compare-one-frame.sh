@@ -5,12 +5,13 @@
 set -euo pipefail
 source "$(dirname "$0")/find_gazetrace.sh"
 frame=${FRAME:-7}
-common=(render --config examples/example.toml --frames "$frame" --size "${SIZE:-640x360}" --overwrite --quiet)
+common=(render --config examples/example.toml --frames "$frame" --size "${SIZE:-640x360}" --accumulate off \
+  --overwrite --quiet)
 
 mkdir -p out/compare/uniform out/compare/foveated
 "$gazetrace" "${common[@]}" --sampling uniform --spp 32 \
   --output out/compare/uniform/frame.####.exr --output out/compare/uniform/frame.####.png
-"$gazetrace" "${common[@]}" --map out/compare/foveated/map.####.exr --aov samples,eccentricity \
+"$gazetrace" "${common[@]}" --sampling regions --map out/compare/foveated/map.####.exr --aov samples,eccentricity \
   --output out/compare/foveated/frame.####.exr --output out/compare/foveated/frame.####.png
 
 # The columns are found by their names, so that new ones do no harm.
