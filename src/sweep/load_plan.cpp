@@ -114,8 +114,8 @@ class PlanMaker {
     ResolvedJob inputs = with_place(job, schema_, gaze == nullptr ? place : gaze->place,
                                     [&] { return resolve(job, planned_with(needs_scene ? loaded.get() : &empty_)); });
     jobs_.warnings.insert(jobs_.warnings.end(), inputs.warnings.begin(), inputs.warnings.end());
+    job.settings = inputs.job.settings;  // with the size, rate and window that follow from screen and length
     job.settings.frames = FrameList{inputs.frames};
-    job.settings.size = inputs.job.settings.size;  // which may follow from the screen
 
     SweepTest test;
     test.id = fmt::format("{}-{}-{}", scene.name, name, k + 1);
