@@ -82,6 +82,8 @@ void check_truth_is_known(const Job& reference, const SweepFileSetting& setting,
 
 Job shared_job(const SweepRequest& request, const SweepFileScene& scene) {
   Job job;
+  // Few frames are measured, and those around them would be most of the cost: rows join where the plan says so.
+  job.settings.accumulate.mode = AccumulateMode::off;
   assign(job, request.file.common, request.schema);
   if (request.frames) {
     job.settings.frames = request.frames;

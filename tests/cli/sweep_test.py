@@ -135,7 +135,7 @@ class Sweep(harness.CliTest):
     def test_scores_are_those_of_render_and_compare(self):
         text = PLAN.replace('[[16, 4, 4], [8, 2, 1]]', '[[8, 2, 1]]')
         text = text.replace("repeats = 2", 'repeats = 1\nbaselines = ["none"]\ncontrols = false\npictures = "both"')
-        self.plan(text.replace("uniform-rates = [1, 4]", ""))
+        self.plan(text.replace("uniform-rates = [1, 4]", "").replace("fps = 12", 'fps = 12\nexposure = "0"'))
         self.run_ok("sweep", "plan.toml", "-o", "out", "--quiet")
         results = self.results("out")
         row = next(row for row in results["rows"] if row["id"] == "box-left-1")
@@ -143,7 +143,8 @@ class Sweep(harness.CliTest):
         reference = "out/" + results["scenes"][0]["reference"]["directory"]
         # The same pictures by `render`, to the code value.
         self.run_ok("render", "box.gltf", "--size", "64x36", *harness.SCREEN, "--gaze-at", "0.2,0.5", "--fps", "12",
-                    "--frames", "1-3", "--region-samples", "8,2,1", "-o", "alone/frame.####.png", "--quiet")
+                    "--frames", "1-3", "--region-samples", "8,2,1", "--accumulate", "off",
+                    "--exposure", "0", "-o", "alone/frame.####.png", "--quiet")
         self.run_ok("compare", "alone/frame.####.png", folder + "/frame.####.png", "--metrics", "mse", "--anyway", "--json",
                     "same.json")
         same = json.loads((self.folder / "same.json").read_text())["sequence"][0]
