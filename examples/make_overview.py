@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes examples/images/overview.jpg, the picture of the README: uniform, foveated and sampling map of one frame.
+"""Makes examples/images/overview.jpg: uniform, foveated and sampling map of one frame.
 
     make_overview.py [GAZETRACE] [--frame N]
 
