@@ -16,14 +16,22 @@
 namespace gazetrace {
 namespace {
 
-constexpr std::array<std::pair<int, const char*>, 4> kSignals{
-    {{SIGTERM, "TERM"}, {SIGINT, "INT"}, {SIGUSR1, "USR1"}, {SIGXCPU, "XCPU"}}};
+constexpr std::array<std::pair<int, const char*>, 5> kSignals{
+    {{SIGTERM, "TERM"}, {SIGINT, "INT"}, {SIGHUP, "HUP"}, {SIGUSR1, "USR1"}, {SIGXCPU, "XCPU"}}};
+
+// Of nohup: a blocked signal would be told of all the same.
+bool is_ignored(int signal) {
+  struct sigaction action {};
+  return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;  // NOLINT: a union of POSIX
+}
 
 sigset_t watched() {
   sigset_t set;
   sigemptyset(&set);
   for (const auto& [signal, name] : kSignals) {
-    sigaddset(&set, signal);
+    if (signal != SIGHUP || !is_ignored(signal)) {
+      sigaddset(&set, signal);
+    }
   }
   return set;
 }

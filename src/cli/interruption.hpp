@@ -11,8 +11,8 @@
 
 namespace gazetrace {
 
-// Of TERM, INT, USR1 and XCPU the first one asks the run to end; a second INT ends the process at once. The signals
-// reach only threads that exist when this is made and those that it makes, so it comes before all others.
+// Of TERM, INT, HUP, USR1 and XCPU the first one asks the run to end; a second INT ends the process at once. The
+// signals reach only threads that exist when this is made and those that it makes, so it comes before all others.
 class Interruption {
  public:
   using Clock = std::chrono::steady_clock;

@@ -143,6 +143,12 @@ class TemporaryFile {
 
 }  // namespace
 
+void refuse_special_file(const std::string& path) {
+  if (std::error_code problem; std::filesystem::is_other(path, problem)) {
+    throw Error(ErrorKind::input, path, "is a device, pipe or socket, which no file replaces", "choose another name");
+  }
+}
+
 bool create_file_once(const std::string& path, std::span<const std::byte> bytes) {
   TemporaryFile file(path);
   file.write(bytes);
@@ -150,6 +156,7 @@ bool create_file_once(const std::string& path, std::span<const std::byte> bytes)
 }
 
 void write_bytes_atomically(const std::string& path, std::span<const std::byte> bytes) {
+  refuse_special_file(path);
   TemporaryFile file(path);
   file.write(bytes);
   file.put_in_place();

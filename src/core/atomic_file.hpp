@@ -16,6 +16,9 @@ namespace gazetrace {
 // was under `path` stays as it was, and Error(runtime) gives the path and the system's reason.
 void write_bytes_atomically(const std::string& path, std::span<const std::byte> bytes);
 
+// A device, pipe or socket is no output: Error(input). write_bytes_atomically() asks it itself.
+void refuse_special_file(const std::string& path);
+
 // The same for a file that must not replace another one: false where the name is taken, by whomever and however
 // recently. Of several writers exactly one gets true.
 bool create_file_once(const std::string& path, std::span<const std::byte> bytes);

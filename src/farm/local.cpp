@@ -52,7 +52,7 @@ pid_t start(const FarmPlan& plan, const std::string& task) {
   sigset_t usual;
   sigemptyset(&none);
   sigemptyset(&usual);
-  for (const int signal : {SIGTERM, SIGINT, SIGUSR1, SIGXCPU, SIGPIPE}) {
+  for (const int signal : {SIGTERM, SIGINT, SIGUSR1, SIGXCPU, SIGHUP, SIGPIPE}) {
     sigaddset(&usual, signal);
   }
   posix_spawnattr_setsigmask(&attributes, &none);
@@ -83,6 +83,11 @@ bool may_be_tried_again(int code) {
   return code == 3 || code == kInterrupted || code > 128;
 }
 
+// A task that goes on by itself (4) is better than one that has failed, whatever its number.
+int worse_of(int a, int b) {
+  return a == 0 || (a == kInterrupted && b != 0) ? b : b == 0 || b == kInterrupted ? a : std::max(a, b);
+}
+
 class Runner {
  public:
   Runner(const FarmPlan& plan, const LocalSettings& settings) : plan_(plan), settings_(settings) {}
@@ -94,7 +99,7 @@ class Runner {
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
-  // The last exit code that was not 0. Whatever is waiting is begun, as many at a time as are wanted.
+  // The worst exit code, see worse_of(). Whatever is waiting is begun, as many at a time as are wanted.
   int run(std::deque<std::string> waiting) {
     int worst = 0;
     bool stopped = false;
@@ -112,9 +117,7 @@ class Runner {
         tell(task, "begins");
         running_.emplace(start(plan_, task), task);
       }
-      if (const int code = collect(stopped, waiting); code != 0) {
-        worst = code;
-      }
+      worst = worse_of(worst, collect(stopped, waiting));
       std::this_thread::sleep_for(kLook);
     }
     return stopped ? kInterrupted : worst;
@@ -137,7 +140,7 @@ class Runner {
         ++tries_[task];
         waiting.push_back(task);
       } else if (*code != 0) {
-        worst = *code;
+        worst = worse_of(worst, *code);
       }
     }
     return worst;

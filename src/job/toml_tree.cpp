@@ -46,6 +46,20 @@ TomlNode tree_of(const toml::node& node) {
   return tree;
 }
 
+// The parser calls itself for each dot of a key, without a limit.
+void refuse_deep_keys(std::string_view text, const std::string& path) {
+  constexpr int kMostDots = 1000;
+  int dots = 0;
+  int line = 1;
+  for (const char c : text) {
+    line += c == '\n' ? 1 : 0;
+    dots = c == '.' ? dots + 1 : std::string_view("\n,=[]{}").find(c) != std::string_view::npos ? 0 : dots;
+    if (dots > kMostDots) {
+      throw Error(ErrorKind::input, fmt::format("{}:{}", path, line), "a key is nested too deep", "this is no job");
+    }
+  }
+}
+
 }  // namespace
 
 const TomlNode* TomlNode::find(std::string_view key) const {
@@ -55,6 +69,7 @@ const TomlNode* TomlNode::find(std::string_view key) const {
 }
 
 TomlNode parse_toml(std::string_view text, const std::string& path) {
+  refuse_deep_keys(text, path);
   try {
     return tree_of(toml::parse(text));
   } catch (const toml::parse_error& error) {

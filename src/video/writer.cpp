@@ -265,7 +265,8 @@ void VideoWriter::add(const DisplayImage& frame) {
 
 void VideoWriter::finish() {
   impl_->close_socket();
-  if (!impl_->wait_for_child()) {
+  // On a full disk some versions say so, leave a cut film and end with 0. Nothing but errors is said at this log level.
+  if (!impl_->wait_for_child() || !impl_->said().empty()) {
     impl_->fail();
   }
   if (::rename(impl_->temporary.c_str(), impl_->path.c_str()) != 0) {

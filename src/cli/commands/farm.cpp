@@ -38,10 +38,7 @@ std::vector<std::size_t> all_chunks(const FarmPlan& plan) {
   return chunks;
 }
 
-int run_here(const FarmPlan& plan, const std::vector<std::size_t>& chunks, int processes) {
-  // The tasks have grace times of their own.
-  Interruption interruption(std::chrono::hours(24), std::nullopt);
-  interruption.frames_begin();
+int run_here(const FarmPlan& plan, const std::vector<std::size_t>& chunks, int processes, Interruption& interruption) {
   LocalSettings local;
   local.processes = processes;
   local.stop = [&] { return interruption.stop_before_frame(0); };
@@ -49,7 +46,13 @@ int run_here(const FarmPlan& plan, const std::vector<std::size_t>& chunks, int p
     std::fprintf(stderr, "task %s: %s\n", task.c_str(), what.c_str());
   };
   const int code = run_local(plan, chunks, local);
-  print_result(farm_status_text(plan, farm_status(plan)));
+  const FarmStatus status = farm_status(plan);
+  print_result(farm_status_text(plan, status));
+  if (code == 0 && !status.is_done()) {
+    throw Error(ErrorKind::runtime, plan.run_folder,
+                "every task ended with 0, and yet files are missing or are not as they were written",
+                "'gazetrace farm retry " + plan.run_folder + "' makes them again");
+  }
   if (code != 0) {
     std::fprintf(stderr, "gazetrace: %s; its log is in %s/logs, and 'gazetrace farm retry %s' goes on\n",
                  code == exit_interrupted ? "interrupted" : "a task has failed", plan.folder.c_str(),
@@ -58,11 +61,19 @@ int run_here(const FarmPlan& plan, const std::vector<std::size_t>& chunks, int p
   return code;
 }
 
-int hand_over(const FarmPlan& plan, const std::vector<std::size_t>& chunks, const FarmArguments& arguments) {
+// Made before the first thread, so that its signals reach no other; the tasks have grace times of their own.
+std::unique_ptr<Interruption> watch_signals(const std::string& engine) {
+  // What hands tasks over to another engine starts programs, which would inherit that signals wait.
+  return engine == "local" ? std::make_unique<Interruption>(std::chrono::hours(24), std::nullopt) : nullptr;
+}
+
+int hand_over(const FarmPlan& plan, const std::vector<std::size_t>& chunks, const FarmArguments& arguments,
+              Interruption* interruption) {
   write_farm(plan, chunks);
   const std::string command = submit_command(plan);
-  if (command.empty()) {
-    return run_here(plan, chunks, arguments.processes);
+  if (command.empty() && interruption != nullptr) {
+    interruption->frames_begin();
+    return run_here(plan, chunks, arguments.processes, *interruption);
   }
   if (!arguments.submit) {
     print_result(fmt::format("{} is written; hand it over with --submit, or by\n  {}\n", plan.folder, command));
@@ -92,9 +103,10 @@ int run_farm(FarmArguments& arguments) {
   if (settings.program.empty()) {
     settings.program = own_program().string();
   }
+  const std::unique_ptr<Interruption> interruption = watch_signals(settings.engine);
   const FarmPlan plan = plan_farm(settings);
   std::fputs(farm_plan_text(plan).c_str(), stderr);
-  return hand_over(plan, all_chunks(plan), arguments);
+  return hand_over(plan, all_chunks(plan), arguments, interruption.get());
 }
 
 int run_status(const FarmArguments& arguments) {
@@ -110,6 +122,7 @@ int run_retry(const FarmArguments& arguments) {
     throw Error(ErrorKind::input, plan.folder, "the farm was made for another folder, and its tasks would write there",
                 "call 'gazetrace farm' again for a job whose outputs are here");
   }
+  const std::unique_ptr<Interruption> interruption = watch_signals(plan.engine);
   const FarmStatus status = farm_status(plan, FileCheck::content);
   if (status.is_done()) {
     throw Error(ErrorKind::nothing_to_do, arguments.folder, "every task is done");
@@ -121,7 +134,7 @@ int run_retry(const FarmArguments& arguments) {
                   "task " + task.name + " is running, and what follows waits for it", "wait until it ends, or end it");
     }
   }
-  return hand_over(plan, chunks_to_retry(status), arguments);
+  return hand_over(plan, chunks_to_retry(status), arguments, interruption.get());
 }
 
 std::string engines_text() {

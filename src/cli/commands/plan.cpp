@@ -175,7 +175,7 @@ int run_plan(const PlanArguments& arguments) {
     for (const FrameRequest& request : resolved.plan.frames) {
       frames.push_back({request.frame, request.t_video_ns, request.camera});
     }
-    check_output_file(arguments.save_camera, true);  // a path was always replaced
+    check_output_file(arguments.save_camera, arguments.job.settings.overwrite);
     write_camera_path(frames, job.camera_read.rotation_order, arguments.save_camera);
   }
   if (arguments.model_gain) {
@@ -232,7 +232,8 @@ Command add_plan_command(CLI::App& app, const Invocation& /*invocation*/) {
   app.add_option(
          "--save-camera", arguments->save_camera,
          "Writes the camera of every frame: .chan for Nuke (--camera-rotation-order), .tum or .txt for TUM, whose "
-         "stamps are the video times of the frames' middles: read it again with --camera-keep-time")
+         "stamps are the video times of the frames' middles: read it again with --camera-keep-time; replaces a file "
+         "with --overwrite only")
       ->type_name("FILE");
   add_json_option(app, arguments->json, arguments->job.settings.overwrite);
   return {[arguments] { return run_plan(*arguments); },
