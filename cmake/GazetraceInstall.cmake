@@ -53,6 +53,7 @@ if(PROJECT_IS_TOP_LEVEL)
   set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
   set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3 (>= 3.11)")  # gazetrace-report and gazetrace-gaze-report
   set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "ffmpeg, python3-jinja2, python3-matplotlib, python3-pandas")
   set(CPACK_DEBIAN_PACKAGE_SUGGESTS "${packages}")
   include(CPack)

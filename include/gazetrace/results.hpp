@@ -197,5 +197,7 @@ std::string results_csv(const Results& results);
 std::string results_table(const Results& results);
 // A paragraph with every setting, to be pasted into a paper.
 std::string results_methods(const Results& results);
+// results.json, results.csv and methods.txt in a folder that is there; replaces them.
+void write_results(const std::string& folder, const Results& results);
 
 }  // namespace gazetrace

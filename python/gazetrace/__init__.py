@@ -2,7 +2,8 @@
 """Offline foveated path tracing driven by recorded gaze.
 
 A `Job` is what one run is asked to do. `Job.plan()` says what would be rendered, `Job.render()` renders it frame by
-frame; `compare()` and the functions of `gazetrace.metrics` measure pictures; `read_gaze()` reads gaze logs.
+frame; `compare()` and the functions of `gazetrace.metrics` measure pictures; `read_gaze()` reads gaze logs; `sweep()`
+measures many settings, and `report()` makes the page on them.
 """
 
 from . import _build
@@ -23,6 +24,9 @@ if int(_numpy.__version__.split(".")[0]) >= 2 and not _core.knows_numpy_2:
         "or build with pybind11 2.12 or newer, as `pip install .` does"
     )
 
+from gazetrace_report import report
+from gazetrace_report.results import Results
+
 from . import metrics
 from ._errors import Error, GazetraceWarning
 from ._table import Events, Table
@@ -31,6 +35,7 @@ from .gaze import GazeLog, read_gaze
 from .job import Job, Scene, options, write_density
 from .plan import Plan
 from .rendering import Frame, Gaze, Rendering, SamplingMap
+from .sweep import sweep
 
 __version__ = _core.version
 __all__ = [
@@ -44,6 +49,7 @@ __all__ = [
     "Job",
     "Plan",
     "Rendering",
+    "Results",
     "SamplingMap",
     "Scene",
     "Table",
@@ -51,5 +57,7 @@ __all__ = [
     "metrics",
     "options",
     "read_gaze",
+    "report",
+    "sweep",
     "write_density",
 ]

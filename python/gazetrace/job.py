@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Jobs: what one run is asked to do."""
 
+import json
 import os
 import tempfile
 import warnings
@@ -119,6 +120,13 @@ class Job:
         planned = _core.Planned(self._core)
         _warn(planned.warnings())
         return Plan(planned)
+
+    def outlines(self):
+        """Where each object of the scene is seen in each frame, exact to the pixel: what `gazetrace gaze aois --outlines`
+        writes, as a dictionary. docs/gaze.md says what is in it."""
+        text, warnings = _core.outlines(self._core)
+        _warn(warnings)
+        return json.loads(text)
 
     def load_scene(self):
         """The job's scene with its environment, for `render(scene=...)` of several jobs that share it."""

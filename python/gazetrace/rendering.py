@@ -147,7 +147,7 @@ class Frame:
 
     @property
     def eccentricity(self):
-        """How far each pixel is from the gaze, in degrees."""
+        """How far each pixel is from the gaze, in degrees; None without gaze."""
         return self._core.eccentricity()
 
     @property

@@ -9,12 +9,12 @@ from pathlib import Path
 
 
 def report(results, output=None, *, plots=None, max_mib=5):
-    """Makes the page on a sweep, of its results.json or its folder, and returns where it is; replaces one that is there.
+    """Makes the page on a sweep, of its `Results`, results.json or folder, and returns where it is; replaces one that is there.
 
     `plots` is a folder for the diagrams, as SVG and PDF with their numbers."""
     from .sweep_command import make
     from .results import Results
-    read = Results(results)
+    read = results if isinstance(results, Results) else Results(results)
     path = Path(output) if output else read.folder / "report.html"
     for warning in make(read, path, Path(plots) if plots else None, max_mib)[1]:
         warnings.warn(warning, stacklevel=2)

@@ -3,7 +3,8 @@
 
 import sys
 
-from .command_line import Problem, end
+from .command_line import end
+from .errors import Error
 
 
 def sweep(finds_itself=False):
@@ -24,7 +25,7 @@ def iohub(finds_itself=False):
 def which(words):
     commands = {"sweep": sweep, "gaze": gaze}
     if not words or words[0] not in commands:
-        raise Problem("name what to report on: sweep or gaze")
+        raise Error("name what to report on: sweep or gaze")
     del sys.argv[1]
     commands[words[0]]()
 

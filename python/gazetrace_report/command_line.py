@@ -2,22 +2,26 @@
 """What the commands share: one rule for --json, files that are written whole, and what can go wrong in one line on the
 error stream, with the program's exit codes."""
 
+import argparse
 import contextlib
 import json
 import os
 import sys
 from pathlib import Path
 
+from .errors import EXIT_CODES, Error
+
 PACKAGES = {"matplotlib": "python3-matplotlib", "jinja2": "python3-jinja2", "pandas": "python3-pandas"}
-USAGE, FAILED, INTERRUPTED = 2, 3, 4
 
 
-class Problem(Exception):
-    """For the user; `code` is the exit code."""
+class Parser(argparse.ArgumentParser):
+    """What is wrong stands in one line, as the program's."""
 
-    def __init__(self, text, code=USAGE):
-        super().__init__(text)
-        self.code = code
+    def __init__(self, prog, **more):
+        super().__init__(prog=prog, allow_abbrev=False, **more)
+
+    def error(self, message):
+        raise Error(f"{message}; see '{self.prog} --help'")
 
 
 def end(name, main, finds_itself=False):
@@ -25,21 +29,27 @@ def end(name, main, finds_itself=False):
     started finds this package in any Python, as what pip installs does not."""
     try:
         sys.exit(main(sys.argv[1:]))
-    except Problem as problem:
+    except Error as problem:
         print(f"gazetrace: error: {problem}", file=sys.stderr)
-        sys.exit(problem.code)
+        sys.exit(EXIT_CODES[problem.kind])
     except ModuleNotFoundError as missing:
         if missing.name not in PACKAGES:
             raise
         if finds_itself:
             _try_the_systems_python()
-        print(f"gazetrace: error: {name} needs {', '.join(PACKAGES)}: install them, on Debian with "
-              f"'apt-get install {' '.join(PACKAGES.values())}'", file=sys.stderr)
-        sys.exit(FAILED)
+        print(f"gazetrace: error: {name} needs {', '.join(PACKAGES)}: install them, {_how_to_install()}", file=sys.stderr)
+        sys.exit(EXIT_CODES["runtime"])
     except KeyboardInterrupt:
-        sys.exit(INTERRUPTED)
+        sys.exit(EXIT_CODES["interrupted"])
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _how_to_install():
+    """A virtual environment does not see the distribution's packages."""
+    if sys.prefix != sys.base_prefix:
+        return f"with '{sys.executable} -m pip install {' '.join(PACKAGES)}'"
+    return f"on Debian with 'apt-get install {' '.join(PACKAGES.values())}'"
 
 
 def _try_the_systems_python():
@@ -55,14 +65,14 @@ def add_json_option(parser):
 
 
 def with_json_joined(words):
-    """What follows --json is its file only where it looks like one."""
+    """What follows --json is its file only where it looks like one. Behind -- are no options."""
     joined, rest = [], list(words)
-    while rest:
+    while rest and rest[0] != "--":
         word = rest.pop(0)
         if word == "--json":
             word = f"--json={rest.pop(0) if rest and (rest[0] == '-' or rest[0].endswith('.json')) else '-'}"
         joined.append(word)
-    return joined
+    return joined + rest
 
 
 def json_file(given, overwrite, read=()):
@@ -84,11 +94,11 @@ def say(text, result, given):
 def check_output(path, overwrite, read=()):
     """`read`: files that are no output, whatever is overwritten."""
     if any(os.path.exists(path) and os.path.exists(other) and os.path.samefile(path, other) for other in read):
-        raise Problem(f"{path}: is what is reported on; name another file")
+        raise Error(f"{path}: is what is reported on; name another file", "input")
     if path.exists() and not overwrite:
-        raise Problem(f"{path}: exists already; give --overwrite to replace it")
+        raise Error(f"{path}: exists already; give --overwrite to replace it", "input")
     if path.is_dir():
-        raise Problem(f"{path}: is a folder; name a file")
+        raise Error(f"{path}: is a folder; name a file")
 
 
 def write(path, content):
@@ -102,4 +112,4 @@ def write(path, content):
     except OSError as problem:
         with contextlib.suppress(OSError):
             rest.unlink()
-        raise Problem(f"{path}: cannot be written: {problem.strerror}", FAILED) from problem
+        raise Error(f"{path}: cannot be written: {problem.strerror}", "runtime") from problem

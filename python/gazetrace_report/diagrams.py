@@ -96,8 +96,8 @@ def _fronts(results, place, metric):
     """Ids of each Pareto front that the sweep has found; each reference has its own, as scores against different ones do
     not compare."""
     name = "/".join(place)
-    found = (results.raw.get("pareto") or {}).get(metric.name) or {}
-    return [ids for key, ids in found.items() if key == name or key.startswith(name + "/")]
+    names = {name, *(f"{name}/{reference.get('key')}" for reference in results.references(place))}
+    return [ids for key, ids in ((results.raw.get("pareto") or {}).get(metric.name) or {}).items() if key in names]
 
 
 def _pareto(results, place, metric, with_pdf):

@@ -4,7 +4,9 @@
 import contextlib
 import html
 import io
+import logging
 import re
+import warnings
 from importlib import resources
 
 import matplotlib
@@ -20,10 +22,24 @@ STYLE = resources.files(__package__) / "data" / "gazetrace.mplstyle"
 @contextlib.contextmanager
 def figure(width=4.6, height=3.3, **more):
     """A figure with its axes in the style of all, whatever the user's own; apart from pyplot, whose backend is the caller's."""
-    with matplotlib.style.context(["default", str(STYLE)]):
+    with matplotlib.style.context(["default", str(STYLE)]), _without_words_on_fonts():
         fig = Figure(figsize=(width, height))
         FigureCanvasAgg(fig)
         yield fig, fig.subplots(**more)
+
+
+@contextlib.contextmanager
+def _without_words_on_fonts():
+    """A page's letters are the browser's: which fonts there are here, and which signs these have, says nothing of it."""
+    log = logging.getLogger("matplotlib.font_manager")
+    level = log.level
+    log.setLevel(logging.ERROR)
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Glyph .* missing from", UserWarning)
+            yield
+    finally:
+        log.setLevel(level)
 
 
 def svg_of(fig, title):

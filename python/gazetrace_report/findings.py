@@ -53,14 +53,14 @@ def tally(compared):
 def losses(compared):
     """Where a uniform run of the same cost is better."""
     lost = compared[compared.verdict == "worse"]
-    return pandas.DataFrame({
-        "scene and gaze": [words.place(*test.place) for test in lost.test],
-        "foveated": [test.name for test in lost.test],
-        "better is": [ROLES[row.role].words for row in lost.baseline],
+    return pandas.DataFrame({  # what a phone shows without scrolling comes first
         "metric": lost.metric,
         "in": [words.part(part) for part in lost.part],
-        "its score": lost.theirs,
-        "foveated score": lost.ours,
+        "foveated": lost.ours,
+        "uniform": lost.theirs,
+        "uniform run": [ROLES[row.role].words for row in lost.baseline],
+        "foveated run": [test.name for test in lost.test],
+        "scene and gaze": [words.place(*test.place) for test in lost.test],
     })
 
 

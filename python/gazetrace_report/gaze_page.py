@@ -13,11 +13,15 @@ def known(value, unit="", digits=3):
     return "not known" if value is None else words.number(value, digits) + (f" {unit}" if unit else "")
 
 
+def loss(q):
+    return known(None if q["data_loss"] is None else 100 * q["data_loss"], "%")
+
+
 def quality(numbers):
     rows = {
         "Sampling rate": lambda q: known(q["sampling_rate_hz"], "Hz", 4),
         "Effective rate": lambda q: known(q["effective_rate_hz"], "Hz", 4),
-        "Data loss": lambda q: known(None if q["data_loss"] is None else 100 * q["data_loss"], "%"),
+        "Data loss": loss,
         "Accuracy, mean": lambda q: known(q["accuracy_deg"], "deg"),
         "Accuracy, worst": lambda q: known(q["accuracy_max_deg"], "deg"),
         "Precision, RMS-S2S": lambda q: known(q["precision_rms_s2s"], q["precision_unit"]),
@@ -49,7 +53,7 @@ def make(numbers, diagrams):
         figures[one.section].append({"svg": drawing.in_page(one.svg, one.title, n), "note": one.note, "title": one.title})
     warnings = [text.split(": ", 1)[1] if text.startswith(f"{numbers['source']}: ") or f"/{numbers['source']}: " in text else text for text in numbers["warnings"]]
     q = numbers["quality"][0]
-    facts = f"{q['samples']} samples in {words.number(q['duration_s'], 5)} s, {numbers['events']['fixation']['count']} fixations, data loss {known(None if q['data_loss'] is None else 100 * q['data_loss'], '%')}"
+    facts = f"{q['samples']} samples in {words.number(q['duration_s'], 5)} s, {numbers['events']['fixation']['count']} fixations, data loss {loss(q)}"
     return templates().get_template("gaze.html").render(
         title=f"Gaze: {name}", facts=facts, warnings=[text.replace("`", "") for text in warnings], quality=quality(numbers), events=events(numbers), figures=figures,
         trials=trials, most_trials=MOST_TRIALS, method=numbers["method_words"].replace("`", ""), program=numbers["program"])

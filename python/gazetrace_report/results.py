@@ -5,7 +5,7 @@ import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .command_line import Problem
+from .errors import Error
 
 FORMAT = "gazetrace-sweep-1"
 REGIONS = ("fovea", "intermediate", "periphery")
@@ -35,36 +35,53 @@ SAME_COST = ("equal-time", "equal-samples", "low-resolution")
 NUMBER = (int, float, type(None))
 WHOLE = (int,)
 TEXT = (str,)
-# What the pages rely on: key -> kinds of values, or what is within.
+FLAG = (bool,)
+ANY = (object,)
+ESTIMATE = "a mean with its interval, or a mean alone"
+FRAME = {"index": WHOLE, "?t_s": NUMBER, "?time_s": NUMBER, "?event": TEXT, "?gaze_px": [(int, float)], "?rings_px": [(int, float)], "?png": TEXT, "?flip_png": TEXT,
+         "?scores": {"*": NUMBER}}
+SCORES = {"*": {"*": ESTIMATE}}  # of each metric, of each part of the picture
+# What the pages rely on: key -> kinds of values, or what is within; "?" may be missing, "*" is any key.
 SCHEMA = {
-    "metrics": [{"name": TEXT}],
-    "scenes": [{"name": TEXT}],
-    "rows": [{"id": TEXT, "scene": TEXT, "role": tuple(ROLES), "frames": [{"index": WHOLE, "?t_s": NUMBER, "?time_s": NUMBER}],
-              "?spp_mean": NUMBER, "?end_to_end": NUMBER}],
+    "metrics": [{"name": TEXT, "?unit": TEXT, "?better": TEXT, "?note": TEXT}],
+    "scenes": [{"name": TEXT, "?reference": {"?key": TEXT, "?png": TEXT, "?floor": SCORES, "?floor_by_gaze": {"*": SCORES}}}],
+    "rows": [{"id": TEXT, "scene": TEXT, "role": tuple(ROLES), "?gaze": TEXT, "?label": TEXT, "?of": TEXT, "?reference": TEXT, "?baselines": {"*": TEXT}, "?settings": {"*": ANY},
+              "?scores": SCORES, "?frames": [FRAME], "?published": [{"speed_up": NUMBER, "source": TEXT}],
+              **{f"?{key}": ESTIMATE for key in ("time_s", "speed_up", "reached")},
+              **{f"?{key}": NUMBER for key in ("samples", "spp_mean", "rays", "peak_mib", "end_to_end", "efficiency")}}],
+    **{f"?{key}": TEXT for key in ("title", "plan_file", "methods")}, "?notes": [TEXT], "?build": {"*": ANY}, "?machine": {"*": ANY},
+    "?bands_deg": [(int, float)], "?band_pixel_share": {"*": [NUMBER]}, "?shares": {"*": {"*": NUMBER}}, "?pareto": {"*": {"*": [TEXT]}},
+    "?fixed_quality": [{"metric": TEXT, "at": NUMBER, **{f"?{key}": TEXT for key in ("scene", "gaze", "curve", "bound", "why")}, "?speed_up": NUMBER, "?model_gain": NUMBER}],
+    "?controls": [{"metric": TEXT, "sensitive": FLAG, **{f"?{key}": TEXT for key in ("scene", "gaze", "of", "wrong", "why")}, "?right_score": NUMBER, "?wrong_score": NUMBER}],
 }
 
 
 def check(value, schema, place):
-    """Fails with the place of the first value that is missing or of another kind."""
+    """Fails with the place of the first value that is missing or of another kind. What may be missing and is null goes: it
+    is not known."""
+    if schema is ESTIMATE:
+        schema = {"?mean": NUMBER, "?low": NUMBER, "?high": NUMBER, "?resolved": FLAG} if isinstance(value, dict) else NUMBER
     if isinstance(schema, dict):
         if not isinstance(value, dict):
-            raise Problem(f"{place} is no object")
-        for key, inner in schema.items():
-            name = key.lstrip("?")
+            raise Error(f"{place} is no object", "input")
+        for key in [key for key in value if value[key] is None and ("*" in schema or "?" + key in schema)]:
+            del value[key]
+        for key, inner in (dict.fromkeys(value, schema["*"]) if "*" in schema else schema).items():
+            name = key.removeprefix("?") if "*" not in schema else key
             if name in value:
                 check(value[name], inner, f"{place}.{name}" if place[-1] != " " else place + name)
-            elif key == name and inner != [{"index": WHOLE, "?t_s": NUMBER, "?time_s": NUMBER}]:
-                raise Problem(f"{place}{'' if place[-1] == ' ' else ' '}has no '{name}'")
+            elif key == name:
+                raise Error(f"{place}{'' if place[-1] == ' ' else ' '}has no '{name}'", "input")
     elif isinstance(schema, list):
         if not isinstance(value, list):
-            raise Problem(f"{place} is no list")
+            raise Error(f"{place} is no list", "input")
         for i, item in enumerate(value):
             check(item, schema[0], f"{place}[{i}]")
     elif isinstance(schema[0], str):
         if value not in schema:
-            raise Problem(f"{place} is no role of a row: '{value}'")
-    elif not isinstance(value, schema) or isinstance(value, bool):
-        raise Problem(f"{place} is no {'text' if schema is TEXT else 'whole number' if schema is WHOLE else 'number'}")
+            raise Error(f"{place} is no role of a row: '{value}'", "input")
+    elif not isinstance(value, schema) or (isinstance(value, bool) and bool not in schema and object not in schema):
+        raise Error(f"{place} is no {'text' if schema is TEXT else 'whole number' if schema is WHOLE else 'truth value' if schema is FLAG else 'number'}", "input")
 
 
 @dataclass(frozen=True)
@@ -132,7 +149,13 @@ class Metric:
         return "lower is better" if self.lower else "higher is better"
 
 
+def _finite(text):
+    return float(text) if abs(float(text)) < float("inf") else None
+
+
 class Results:
+    """What a sweep measured: its rows with their times and scores, of results.json or its folder."""
+
     def __init__(self, path):
         path = Path(path)
         self.file = path / "results.json" if path.is_dir() else path
@@ -149,18 +172,37 @@ class Results:
 
     def _read(self):
         try:
-            raw = json.loads(self.file.read_bytes(), parse_constant=lambda name: None)  # NaN and Infinity are no JSON, and nothing to draw
+            raw = json.loads(self.file.read_bytes(), parse_constant=lambda name: None, parse_float=_finite)  # NaN and Infinity are no JSON, and nothing to draw
         except FileNotFoundError:
-            raise Problem(f"{self.file}: there is no such file; name results.json of a sweep, or its folder") from None
+            raise Error(f"{self.file}: there is no such file; name results.json of a sweep, or its folder", "input") from None
         except OSError as problem:
-            raise Problem(f"{self.file}: cannot be read: {problem.strerror}") from problem
+            raise Error(f"{self.file}: cannot be read: {problem.strerror}", "input") from problem
         except (ValueError, RecursionError) as problem:
-            raise Problem(f"{self.file}: is no JSON: {problem}; write it again with gazetrace sweep") from problem
+            raise Error(f"{self.file}: is no JSON: {problem}; write it again with gazetrace sweep", "input") from problem
         form = raw.get("format") if isinstance(raw, dict) else None
         if form != FORMAT:
-            raise Problem(f"{self.file}: " + (f"is of the format '{form}', and this version reads {FORMAT} only" if form else f"is no {FORMAT} file: it has no 'format'"))
+            raise Error(f"{self.file}: " + (f"is of the format '{form}', and this version reads {FORMAT} only" if form else f"is no {FORMAT} file: it has no 'format'"))
         check(raw, SCHEMA, f"{self.file}: ")
         return raw
+
+    def to_pandas(self):
+        """A row for each run: what it is, its time and speed-up with their intervals, and its scores of whole frames."""
+        import pandas
+        table = []
+        for row in self.rows:
+            estimates = {"time_s": row.estimate("time_s"), "speed_up": row.estimate("speed_up"), **{metric.name: row.score(metric.name) for metric in self.metrics}}
+            line = {"id": row.id, "role": row.role, "scene": row.scene, "gaze": row.gaze, "label": row.label, "spp_mean": row.raw.get("spp_mean")}
+            for name, estimate in estimates.items():
+                values = (estimate.mean, estimate.low, estimate.high) if estimate else (None,) * 3
+                line.update(zip((name, f"{name}_low", f"{name}_high"), values))
+            table.append(line)
+        return pandas.DataFrame(table)
+
+    def __repr__(self):
+        return f"<Results of {len(self.rows)} runs in {self.folder}: {', '.join(metric.name for metric in self.metrics)}>"
+
+    def _repr_html_(self):
+        return self.to_pandas()._repr_html_()
 
     # Names -------------------------------------------------------------------------------------------------------
 
@@ -233,12 +275,12 @@ class Results:
         keyless = None
         for scene in self.raw["scenes"]:
             key = (scene.get("reference") or {}).get("key") or ""
-            if scene["name"] != row.scene:
+            if scene["name"] != row.scene or "reference" not in scene:
                 continue
             if row.raw.get("reference") and key == row.raw["reference"]:
                 return scene["reference"]
             if keyless is None and (not row.raw.get("reference") or not key):
-                keyless = scene.get("reference") or {}
+                keyless = scene["reference"]
         return keyless
 
     def references(self, place):
@@ -255,7 +297,7 @@ class Results:
         by_gaze = reference.get("floor_by_gaze")
         scores = reference.get("floor") if by_gaze is None else by_gaze.get(gaze, by_gaze.get(""))
         value = ((scores or {}).get(metric) or {}).get(part)
-        return value["mean"] if isinstance(value, dict) else value
+        return value.get("mean") if isinstance(value, dict) else value
 
     # Controls -----------------------------------------------------------------------------------------------------
 

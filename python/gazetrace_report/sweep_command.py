@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """`gazetrace report`: a page, diagrams and their numbers of what a sweep measured."""
 
-import argparse
 import sys
 from pathlib import Path
 
-from .command_line import Problem, add_json_option, check_output, json_file, say, with_json_joined, write
+from .command_line import Parser, add_json_option, check_output, json_file, say, with_json_joined, write
+from .errors import Error
 
 
 def parse(words):
-    parser = argparse.ArgumentParser(prog="gazetrace report", description="Make a page, diagrams and tables of what a sweep measured.", allow_abbrev=False)
+    parser = Parser("gazetrace report", description="Make a page, diagrams and tables of what a sweep measured.")
     parser.add_argument("results", type=Path, help="results.json of a sweep, or its folder")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="the page; default: report.html beside the results")
     parser.add_argument("--plots", type=Path, metavar="DIR", help="writes every diagram as .svg and .pdf and its numbers as .csv; replaces them")
@@ -23,7 +23,7 @@ def parse(words):
 def main(words):
     arguments = parse(words)
     if not arguments.max_mib > 0:
-        raise Problem("--max-mib: must be above 0")
+        raise Error("--max-mib: must be above 0")
     from .results import Results
     results = Results(arguments.results)
     output = arguments.output or results.folder / "report.html"

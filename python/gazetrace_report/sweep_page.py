@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page on a sweep: one file that opens without a network."""
 
+import functools
 import json
 
 import jinja2
@@ -11,6 +12,7 @@ MIB = 2**20
 BYTES_OF_FRAME = 400  # of a frame's gaze, times and scores, for each run
 
 
+@functools.cache
 def templates():
     return jinja2.Environment(loader=jinja2.PackageLoader(__package__, "data"), autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
 
@@ -34,8 +36,8 @@ def make(results, drawn, max_mib):
     names = {place: words.place(*place) for place in results.places}
     sets = [viewer.Set(results, place) for place in results.places]
     data = {"metrics": [metric.name for metric in results.metrics],
-            "tests": [{"id": test.id, "label": test.name, "set": "/".join(test.place)} for test in results.tests],
-            "plots": [{"kind": one.kind, "set": "/".join(one.place), "row": one.row, "metric": one.metric, "svg": drawing.in_page(one.svg, one.title, n)}
+            "tests": [{"id": test.id, "label": test.name, "set": str(results.places.index(test.place))} for test in results.tests],
+            "plots": [{"kind": one.kind, "set": str(results.places.index(one.place)), "row": one.row, "metric": one.metric, "svg": drawing.in_page(one.svg, one.title, n)}
                       for n, one in enumerate(drawn)],
             "sets": [], "pictures": []}
     values = {

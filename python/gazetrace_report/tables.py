@@ -97,10 +97,10 @@ def bands(results, place):
     rows, parts = results.rows_in_order(place), results.parts
     shares = (results.raw.get("band_pixel_share") or {}).get(place[1]) or []
     heads = [(part + (" deg" if part in results.bands else ""),
-              f"{100 * shares[results.bands.index(part)]:.3g} % of pixels" if part in results.bands and results.bands.index(part) < len(shares) else "")
+              f"{100 * share:.3g} % of pixels" if (share := dict(zip(results.bands, shares)).get(part)) is not None else "")
              for part in parts]
     made = ""
-    for metric in results.metrics:
+    for metric in results.metrics if rows else ():
         values = [[(row.name, ROLES[row.role].words), *(row.score(metric.name, part) for part in parts)] for row in rows]
         made += table(pandas.DataFrame(values, dtype=object).set_axis(["run", *heads], axis=1), f"{metric.words}, {metric.better}")
     return made

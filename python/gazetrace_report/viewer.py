@@ -69,9 +69,9 @@ def _run(label, row, kinds, frames, embedded, indices, texts):
 
 
 def sets_as_data(sets, names, embedded):
-    """The sets as the script takes them, and the pictures as data: addresses, each once."""
+    """The sets as the script takes them, numbered as the places of the results, and the pictures as data: addresses, each once."""
     indices, texts, data = {}, [], []
-    for one in sets:
+    for number, one in enumerate(sets):
         shown = []
         for frame in one.frames:
             picture = next((embedded.of_path[path] for _, _, pictures, _ in one.runs if (path := pictures.get(frame["index"])) in embedded.of_path), None)
@@ -79,5 +79,5 @@ def sets_as_data(sets, names, embedded):
                 shown.append((frame, picture))
         frames = [frame for frame, _ in shown]
         runs = [_run(label, row, kinds, frames, embedded, indices, texts) for label, row, *kinds in one.runs] if frames else []
-        data.append({"id": "/".join(one.place), "name": names[one.place], "frames": [_frame(*both) for both in shown], "runs": runs})
+        data.append({"id": str(number), "name": names[one.place], "frames": [_frame(*both) for both in shown], "runs": runs})
     return data, texts

@@ -12,5 +12,6 @@ void bind_frame(pybind11::module_& module);      // frame.cpp
 void bind_rendering(pybind11::module_& module);  // rendering.cpp
 void bind_gaze(pybind11::module_& module);       // gaze.cpp
 void bind_compare(pybind11::module_& module);    // compare.cpp
+void bind_sweep(pybind11::module_& module);      // sweep.cpp
 
 }  // namespace gazetrace::python

@@ -20,4 +20,5 @@ PYBIND11_MODULE(_core, module) {
   bind_rendering(module);
   bind_gaze(module);
   bind_compare(module);
+  bind_sweep(module);
 }

@@ -11,6 +11,7 @@
 #include "bind.hpp"
 #include "errors.hpp"
 #include "frame.hpp"
+#include "gazetrace/gaze_outlines.hpp"
 #include "gazetrace/resolve.hpp"
 
 namespace gazetrace::python {
@@ -38,6 +39,11 @@ void bind_plan(py::module_& module) {
   module.def(
       "load_scene", [](const Job& job) { return std::make_shared<Scene>(load_job_scene(job.settings)); },
       py::call_guard<py::gil_scoped_release>());
+  module.def("outlines", [](const Job& job) {
+    const py::gil_scoped_release release;
+    const OutlinesOfJob made = outlines_of_job(job);
+    return std::pair(outlines_as_json(made.outlines), in_keywords(made.warnings));
+  });
   py::class_<Planned, std::shared_ptr<Planned>>(module, "Planned")
       .def(py::init([](const Job& job) {
              ResolveOptions options;

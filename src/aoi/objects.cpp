@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "aoi/object_names.hpp"
 #include "gazetrace/gaze_objects.hpp"
 
 namespace gazetrace {
@@ -24,35 +25,6 @@ void check_settings(const GazeObjectsSettings& settings) {
     throw Error(ErrorKind::usage, "", "the number of nearest objects, or of the rays that seek them, is out of range");
   }
 }
-
-// Gives each pair of node and material a number; 0 is the environment.
-class ObjectNames {
- public:
-  explicit ObjectNames(const Scene& scene) : scene_(scene) { objects_.emplace_back(); }
-
-  std::size_t of(const RayHit& hit) {
-    if (hit.object == 0) {
-      return 0;
-    }
-    const auto [known, is_new] = by_hit_.try_emplace({hit.object, hit.material}, 0);
-    if (is_new) {
-      const SceneObject object{scene_.instances[hit.object - 1].node, scene_.materials[hit.material - 1].name};
-      const auto [named, is_new_name] = by_name_.try_emplace({object.node, object.material}, objects_.size());
-      if (is_new_name) {
-        objects_.push_back(object);
-      }
-      known->second = named->second;
-    }
-    return known->second;
-  }
-  [[nodiscard]] const std::vector<SceneObject>& objects() const { return objects_; }
-
- private:
-  const Scene& scene_;
-  std::vector<SceneObject> objects_;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> by_hit_;
-  std::map<std::pair<std::string, std::string>, std::size_t> by_name_;
-};
 
 // The centres of equal cells over the frame, about `count` of them.
 std::vector<Vec2d> grid_over(const PlanarView& view, int count, double& step_px) {

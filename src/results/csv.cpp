@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "gazetrace/output.hpp"
 #include "results/lookup.hpp"
 
 namespace gazetrace {
@@ -74,6 +75,12 @@ std::string results_csv(const Results& results) {
     }
   }
   return text;
+}
+
+void write_results(const std::string& folder, const Results& results) {
+  write_text_atomically(folder + "/results.csv", results_csv(results));
+  write_text_atomically(folder + "/methods.txt", results_methods(results));
+  write_text_atomically(folder + "/results.json", results_json(results));
 }
 
 }  // namespace gazetrace

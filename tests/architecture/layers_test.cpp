@@ -79,7 +79,7 @@ const std::map<std::string, std::vector<std::string>> public_headers = {
     {"job",
      {"compare_inputs", "compare_job", "former_options", "job", "job_schema", "job_settings", "metric_options",
       "option_schema", "option_values", "recorded_run", "resolve", "run_job"}},
-    {"aoi", {"gaze_objects", "gaze_aois"}},
+    {"aoi", {"gaze_objects", "gaze_aois", "gaze_outlines"}},
     {"sweep", {"sweep", "sweep_plan"}},
     {"video", {"video"}},
     {"farm", {"farm"}},

@@ -42,6 +42,13 @@ class GazeReport(reports.ReportTest):
         self.refused(main, ["log.csv", "-o", "other.html", "--heat-sigma", "0"], ["--heat-sigma"])
         self.refused(main, ["log.csv", "-o", "log.csv", "--overwrite"], ["log.csv", "name another file"])
         self.assertEqual(self.report(main, "none.csv", "-o", "other.html")[2], 2)
+        self.refused(main, ["log.csv", "-o", "other.html", "--tables", "t"], ["--tables", "--parts"])
+        self.refused(main, ["log.csv", "--heat-sigma", "wide"], ["--heat-sigma", "see 'gazetrace gaze report --help'"])
+        for words in ([], ["--"], ["-o", "other.html"]):
+            self.refused(main, words, ["name a gaze log"])
+        (self.folder / "--tables").write_text((self.folder / "log.csv").read_text())
+        self.made(main, "-o", "dashes.html", "--", "--tables")
+        self.assertIn(f"{numbers['quality'][0]['samples']} samples", (self.folder / "dashes.html").read_text())
         # The page's numbers are those of the measurement.
         quality, events = reports.Page(page).tables
         measured = json.loads(self.run_ok("gaze", "measure", "log.csv", "--json").stdout)
@@ -54,6 +61,19 @@ class GazeReport(reports.ReportTest):
             self.assertEqual(float(shown[name].split(" ")[0]), float(f"{value:.{digits}g}"))
         self.assertEqual((shown["Samples"], shown["Accuracy, mean"]), (str(q["samples"]), "not known"))
         self.assertEqual({row[0]: row[1] for row in events[1:]}, {name: str(of["count"]) for name, of in measured["events"].items() if of["count"]})
+
+    def test_logs_of_which_little_is_known(self):
+        """One sample, none that is usable, no screen: what is not known is said to be."""
+        head = "# gazetrace-gaze 1\n# display_px 1920 1080\n# display_mm 510 287\n# distance_mm 650\nt[ns],u[1],v[1],valid,eye\n"
+        for name, rows in (("one", ["0,0.5,0.5,ok,cyclopean"]), ("lost", [f"{i * 10_000_000},,,lost,cyclopean" for i in range(50)]),
+                           ("still", [f"{i * 10_000_000},0.5,0.5,ok,cyclopean" for i in range(50)]), ("two", ["0,0.5,0.5,ok,cyclopean", "10000000,,,lost,cyclopean"])):
+            self.write(f"{name}.csv", head + "\n".join(rows) + "\n")
+            out, err, code = self.report(main, f"{name}.csv", "-o", f"{name}.html")
+            self.assertEqual(code, 0, err)
+            self.assertNotIn("nan", out)
+            page = (self.folder / f"{name}.html").read_text()
+            self.assertNotRegex(re.sub(r"<svg.*?</svg>", "", page, flags=re.S), r"\b(nan|inf|None)\b")
+        self.assertIn("data loss 100", self.report(main, "lost.csv", "-o", "lost.html", "--overwrite")[0])
 
     def test_doubts_are_said(self):
         self.run_ok("gaze", "synth", "-o", "noisy.csv", "--duration", "20s", "--noise", "0.5", "--rate", "300")

@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import warnings
 import xml.etree.ElementTree
 
 import harness
@@ -17,6 +18,7 @@ import reports
 import small_results
 
 from gazetrace_report import diagrams, drawing, findings, pictures, sweep_page, tables, viewer, words
+from gazetrace_report.errors import Error
 from gazetrace_report.results import ROLES, Estimate, Results
 from gazetrace_report.sweep_command import main
 
@@ -160,6 +162,65 @@ class Report(reports.ReportTest):
         self.write("results.json", json.dumps(self.results))
         self.assertIn("name no pictures", said(self.page_of()[0]))
 
+    def test_whatever_stands_in_the_results(self):
+        """Each value in turn becomes null, or something of another kind: there is a page, or one line says where it is wrong."""
+        raw = results(*[{**one, "frames": one["frames"][:1]} for one in self.results["rows"][:2]])
+        raw.update({key: value for key, value in self.results.items() if key not in ("format", "metrics", "rows")}, metrics=[self.results["metrics"][0]])
+        raw["rows"][0]["published"] = [{"speed_up": 3, "source": "Table 1"}]
+        for one in raw["rows"]:
+            one["scores"] = {"flip": {part: score for part, score in one["scores"]["flip"].items() if part in ("whole", "0-2.6")}}
+            one["frames"][0]["scores"] = {"flip": 0.1}
+        raw["shares"] = {"glide": {"fixation": 0.8}}
+
+        def places(value, path=()):
+            yield path
+            items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+            for key, inner in items:
+                yield from places(inner, (*path, key))
+
+        seen = {"pages": 0, "refused": 0}
+        for path in [path for path in places(raw) if path and path[0] not in ("format", "common_settings")]:
+            for value in (None, [], {}, "x", True, "1e999"):
+                changed = copy.deepcopy(raw)
+                at = changed
+                for key in path[:-1]:
+                    at = at[key]
+                at[path[-1]] = value
+                self.write("results.json", json.dumps(changed).replace('"1e999"', "1e999"))
+                try:
+                    read = Results(self.folder)
+                    drawn = sweep_page.draw(read) if value is None and path[0] == "rows" else []
+                    page = sweep_page.make(read, drawn, 5)[0]
+                    self.assertIsNone(re.search(r"\b(?:nan|inf)\b", page), path)
+                    read.to_pandas()
+                    seen["pages"] += 1
+                except Error as problem:
+                    self.assertRegex(str(problem), "results.json: .", path)
+                    self.assertEqual(problem.kind, "input")
+                    seen["refused"] += 1
+                except Exception as problem:
+                    raise AssertionError(f"{path} = {value}: {problem!r}") from problem
+        self.assertGreater(min(seen.values()), 100, seen)
+
+    def test_places_whose_names_hold_slashes(self):
+        rows = [row("a", "test", estimate(0.1, 0.09, 0.11)), row("b", "test", estimate(0.2, 0.19, 0.21))]
+        rows[0].update(scene="a/b", gaze="c")
+        rows[1].update(scene="a", gaze="b/c")
+        self.write("results.json", json.dumps(results(*rows)))
+        read = Results(self.folder)
+        data = json.loads(reports.Page(sweep_page.make(read, sweep_page.draw(read), 5)[0]).scripts["data"])
+        self.assertEqual([one["set"] for one in data["tests"]], ["0", "1"])
+        self.assertEqual([one["id"] for one in data["sets"]], ["0", "1"])
+        self.assertEqual({one["set"] for one in data["plots"]}, {"0", "1"})
+
+    def test_nothing_is_said_of_fonts(self):
+        with self.assertNoLogs("matplotlib", "WARNING"), warnings.catch_warnings():
+            warnings.simplefilter("error")
+            with drawing.figure() as (fig, axes):
+                axes.set_title("\u6f22\u5b57 \U0001f441", fontfamily=["No Such Font", "sans-serif"])
+                self.assertIn("\u6f22", drawing.svg_of(fig, "t"))
+                drawing.pdf_of(fig, "t")
+
     def test_a_broken_picture_is_said(self):
         from PIL import Image
         Image.effect_noise((300, 300), 90).convert("RGB").save(self.folder / "few/p.0002.png")
@@ -200,6 +261,9 @@ class Report(reports.ReportTest):
             self.write("a.json", json.dumps(broken))
             refused(["a.json"], said)
         refused([".", "--max-mib", "0"], ["--max-mib"])
+        for words in (["."] * 2, ["--bytes", "3"], [".", "--max-mib", "many"], []):
+            refused(words, ["see 'gazetrace report --help'"])
+        refused(["--", "--json"], ["--json", "no such file"])
         self.write("file", "no folder")
         refused([".", "-o", "file/in/it.html"], ["file/in/it.html: cannot be written"], 3)
         self.write("report.html", "mine")
@@ -210,16 +274,19 @@ class Report(reports.ReportTest):
         self.assertEqual((self.folder / "report.html").read_text(), "mine")
 
     def test_without_the_packages_one_line_says_what_to_install(self):
-        # A Python that has none of them: its own library alone.
+        # A Python that has none of them: its own library alone. A virtual environment does not see what apt installs.
         # What pip installs is found by its own Python alone: another one is not asked.
         installed = self.write("bin/gazetrace-report", "from gazetrace_report.__main__ import sweep\nsweep()\n")
         subprocess.run([sys.executable, "-m", "venv", "--without-pip", self.folder / "venv"], check=True)
-        for command, variables in ((["/usr/bin/env", "python3", "-S", "-B", harness.PROGRAM + "-report"], {"GAZETRACE_REPORT_TRIED": "1"}),
-                                   ([self.folder / "venv/bin/python", "-B", installed], {"PYTHONPATH": str(harness.SOURCE / "python")})):
+        python = self.folder / "venv/bin/python"
+        for command, variables, advice in (
+                (["/usr/bin/env", "python3", "-S", "-B", harness.PROGRAM + "-report"], {"GAZETRACE_REPORT_TRIED": "1"},
+                 "'apt-get install python3-matplotlib python3-jinja2 python3-pandas'"),
+                ([python, "-B", installed], {"PYTHONPATH": str(harness.SOURCE / "python")}, f"'{python} -m pip install matplotlib jinja2 pandas'")):
             done = subprocess.run([*command, str(self.folder)], capture_output=True, text=True, env={"PATH": "/usr/bin:/bin", **variables})
             self.assertEqual(done.returncode, 3, done.stderr)
             self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
-            self.assertIn("apt-get install python3-matplotlib python3-jinja2 python3-pandas", done.stderr)
+            self.assertIn(advice, done.stderr)
 
     def test_the_demo_finishes_without_the_page(self):
         (self.folder / "data").mkdir()
@@ -272,8 +339,8 @@ class Findings(reports.ReportTest):
     def test_losses_follow_from_intervals_apart(self):
         lost = lambda ours, theirs, better="lower": findings.losses(self.compared(row("t", "test", ours), row("u", "equal-time", theirs), better=better))
         one = lost(estimate(0.12, 0.11, 0.13), estimate(0.10, 0.09, 0.105))
-        self.assertEqual(list(one[["better is", "metric", "in"]].iloc[0]), ["uniform, equal time", "flip", "the whole frame"])
-        self.assertEqual((one["its score"][0].mean, one["foveated score"][0].mean), (0.10, 0.12))
+        self.assertEqual(list(one[["uniform run", "metric", "in"]].iloc[0]), ["uniform, equal time", "flip", "the whole frame"])
+        self.assertEqual((one["uniform"][0].mean, one["foveated"][0].mean), (0.10, 0.12))
         self.assertTrue(lost(estimate(0.12, 0.11, 0.13), estimate(0.10, 0.09, 0.111)).empty)  # they overlap
         self.assertTrue(lost(estimate(0.10, 0.09, 0.105), estimate(0.12, 0.11, 0.13)).empty)  # a gain
         verdict = lambda a, b, lower: findings.verdict(Estimate(*a), Estimate(*b), lower)

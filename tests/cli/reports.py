@@ -25,7 +25,7 @@ if not all(importlib.util.find_spec(name) for name in NEEDED):
 sys.path.insert(0, str(harness.SOURCE / "python"))
 os.environ["PATH"] = f"{Path(harness.PROGRAM).resolve().parent}{os.pathsep}{os.environ['PATH']}"
 
-from gazetrace_report.command_line import Problem  # noqa: E402
+from gazetrace_report.errors import EXIT_CODES, Error  # noqa: E402
 
 
 class Page(HTMLParser):
@@ -74,9 +74,9 @@ class ReportTest(harness.CliTest):
             with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
                 try:
                     code = main([str(word) for word in words])
-                except Problem as problem:
+                except Error as problem:
                     print(f"gazetrace: error: {problem}", file=sys.stderr)
-                    code = problem.code
+                    code = EXIT_CODES[problem.kind]
                 except SystemExit as left:
                     code = left.code
         finally:

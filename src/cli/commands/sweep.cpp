@@ -101,10 +101,8 @@ SweepPlan load_plan(const SweepArguments& arguments) {
   return std::move(plan);
 }
 
-void write_results(const SweepPlan& plan, const Results& results, const JsonOutput& json) {
-  write_text_atomically(plan.directory + "/results.csv", results_csv(results));
-  write_text_atomically(plan.directory + "/methods.txt", results_methods(results));
-  write_text_atomically(plan.directory + "/results.json", results_json(results));
+void write_and_print(const SweepPlan& plan, const Results& results, const JsonOutput& json) {
+  write_results(plan.directory, results);
   json.print(results_table(results), [&] { return results_json(results); });
 }
 
@@ -146,7 +144,7 @@ int run_sweep_command(const SweepArguments& arguments) {
     if (const std::optional<SweepTask> task = arguments.task()) {
       run_sweep_task(plan, *task, observer);
     } else {
-      write_results(plan, run_sweep(plan, observer), arguments.json);
+      write_and_print(plan, run_sweep(plan, observer), arguments.json);
     }
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::interrupted) {
@@ -162,7 +160,7 @@ int run_sweep_command(const SweepArguments& arguments) {
 int run_sweep_merge(const SweepArguments& arguments) {
   const SweepPlan plan = load_plan(arguments);
   arguments.merge_json.check();
-  write_results(plan, merge_sweep(plan, arguments.folders, warning_observer()), arguments.merge_json);
+  write_and_print(plan, merge_sweep(plan, arguments.folders, warning_observer()), arguments.merge_json);
   return exit_done;
 }
 

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
@@ -12,6 +13,7 @@
 #include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_aois.hpp"
+#include "gazetrace/gaze_outlines.hpp"
 #include "gazetrace/output.hpp"
 
 namespace gazetrace {
@@ -19,7 +21,7 @@ namespace {
 
 struct AoisArguments {
   Job job;
-  std::string areas, method = "auto", tables;
+  std::string areas, method = "auto", tables, outlines;
   GazeUncertainty uncertainty;
   JsonOutput json;
 };
@@ -44,7 +46,35 @@ void write_tables(const AoisArguments& arguments, const AoiAnalysis& analysis) {
   }
 }
 
+void write_outlines(const AoisArguments& arguments) {
+  const OutlinesOfJob made = outlines_of_job(arguments.job);
+  print_warnings(made.warnings);
+  write_text_atomically(arguments.outlines, outlines_as_json(made.outlines));
+  if (!arguments.areas.empty()) {
+    return;
+  }
+  const std::size_t frames = made.outlines.frames.size();
+  const std::size_t objects = made.outlines.objects.size() - 1;
+  arguments.json.print(
+      fmt::format("{}: outlines of {} objects in {} frames\n", arguments.outlines, objects, frames), [&] {
+        const nlohmann::ordered_json said{{"outlines", arguments.outlines}, {"frames", frames}, {"objects", objects}};
+        return said.dump(2) + "\n";
+      });
+}
+
 int run_aois(const AoisArguments& arguments) {
+  if (arguments.areas.empty() && arguments.outlines.empty()) {
+    throw Error(ErrorKind::usage, "", "no areas were given",
+                "name a file of areas with `aois`, or one for the outlines of objects with `outlines`");
+  }
+  if (!arguments.outlines.empty()) {
+    check_output_file(arguments.outlines, arguments.job.settings.overwrite);
+    arguments.json.check();
+    write_outlines(arguments);
+  }
+  if (arguments.areas.empty()) {
+    return exit_done;
+  }
   const AoisOfJob found = aois_of_job(arguments.job, arguments.areas, arguments.method, arguments.uncertainty);
   print_warnings(found.warnings);
   if (!arguments.tables.empty()) {
@@ -67,8 +97,11 @@ Command add_gaze_aois_command(CLI::App& app, const Invocation& /*invocation*/) {
          "--aois", arguments->areas,
          "The areas, .toml or .json: rectangles, ellipses and polygons in fractions or pixels of the display, or "
          "objects of the scene by node or material")
-      ->required()
       ->type_name("FILE");
+  app.add_option("--outlines", arguments->outlines,
+                 "Writes where each object of the scene is seen in each frame, as polygons in pixels of the frame, for "
+                 "other tools; needs no gaze and no --aois")
+      ->type_name("FILE.json");
   app.add_option("--method", arguments->method, "How fixations are found ('gazetrace list event-methods'), or log")
       ->type_name("NAME")
       ->capture_default_str();
