@@ -9,7 +9,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from .command_line import FAILED, Problem, check_output
+from .command_line import Parser, check_output
+from .errors import Error
 from .gaze_command import program
 
 DESCRIPTION = """Import the gaze of an ioHub file (.hdf5) of PsychoPy. The file does not state the unit of its places: it is the
@@ -22,8 +23,8 @@ INVALID = {"left": (20, 22), "right": (2, 22), "": (2,)}
 
 
 def parse(words):
-    parser = argparse.ArgumentParser(prog="gazetrace gaze iohub", usage="gazetrace gaze iohub FILE.hdf5 -o OUT [options]", description=DESCRIPTION,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
+    parser = Parser("gazetrace gaze iohub", usage="gazetrace gaze iohub FILE.hdf5 -o OUT [options]", description=DESCRIPTION,
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", type=Path, help="the recording")
     parser.add_argument("-o", "--output", required=True, metavar="OUT", help="gazetrace CSV, or BIDS, as of 'gazetrace gaze import'")
     for name in ("--trial-per-block", "--keep-ids", "--overwrite"):
@@ -80,7 +81,7 @@ def main(words):
     try:
         import h5py
     except ModuleNotFoundError as missing:
-        raise Problem("'gazetrace gaze iohub' needs h5py: install it, on Debian with 'apt-get install python3-h5py'", FAILED) from missing
+        raise Error("'gazetrace gaze iohub' needs h5py: install it, on Debian with 'apt-get install python3-h5py'", "runtime") from missing
     if not arguments.output.endswith((".tsv", ".tsv.gz")):
         check_output(Path(arguments.output), arguments.overwrite, [arguments.file])
     try:
@@ -88,11 +89,11 @@ def main(words):
             both, one = events(file, "eyetracker/BinocularEyeSampleEvent"), events(file, "eyetracker/MonocularEyeSampleEvent")
             messages = events(file, "experiment/MessageEvent")
     except OSError as problem:
-        raise Problem(f"{arguments.file}: cannot be read as HDF5: {problem}") from problem
+        raise Error(f"{arguments.file}: cannot be read as HDF5: {problem}", "input") from problem
     if not len(both) and not len(one):
-        raise Problem(f"{arguments.file}: has no samples of an eye tracker under data_collection/events/eyetracker; is it a file of ioHub?")
+        raise Error(f"{arguments.file}: has no samples of an eye tracker under data_collection/events/eyetracker; is it a file of ioHub?", "input")
     if len(both) and len(one):
-        raise Problem(f"{arguments.file}: has samples of both eyes and others of one eye; keep one kind of them")
+        raise Error(f"{arguments.file}: has samples of both eyes and others of one eye; keep one kind of them", "input")
     samples, eyes = (both, ["left", "right"]) if len(both) else (one, [""])
     has_sessions = len(set(samples["session_id"])) > 1
     with tempfile.TemporaryDirectory(prefix="gazetrace_") as made:
