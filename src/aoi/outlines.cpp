@@ -9,7 +9,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr std::uint32_t kNone = 0;
+constexpr std::uint32_t kNoObject = 0;
 // Sides of a pixel, clockwise from the upper one: where each begins, where it leads, and what lies beyond it.
 constexpr std::array<PixelCorner, 4> kBegin{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
 constexpr std::array<PixelCorner, 4> kAlong{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
@@ -43,7 +43,7 @@ class Tracer {
       for (std::int32_t x = 0; x < numbers_.width_px; ++x) {
         // Every ring has an upper side somewhere.
         const std::uint32_t piece = pieces_(x, y);
-        if (piece != kNone && done_(x, y) == 0 && piece_at({x, y - 1}) != piece) {
+        if (piece != kNoObject && done_(x, y) == 0 && piece_at({x, y - 1}) != piece) {
           add_rings({x, y}, polygons[piece - 1]);
         }
       }
@@ -60,7 +60,9 @@ class Tracer {
   [[nodiscard]] bool is_inside(const PixelCorner& p) const {
     return p.x >= 0 && p.y >= 0 && p.x < numbers_.width_px && p.y < numbers_.height_px;
   }
-  [[nodiscard]] std::uint32_t piece_at(const PixelCorner& p) const { return is_inside(p) ? pieces_(p.x, p.y) : kNone; }
+  [[nodiscard]] std::uint32_t piece_at(const PixelCorner& p) const {
+    return is_inside(p) ? pieces_(p.x, p.y) : kNoObject;
+  }
 
   // Numbers the pieces of one object that hang together by sides, from 1.
   void find_pieces() {
@@ -68,7 +70,7 @@ class Tracer {
     for (std::int32_t y = 0; y < numbers_.height_px; ++y) {
       for (std::int32_t x = 0; x < numbers_.width_px; ++x) {
         const std::uint32_t number = numbers_(x, y);
-        if (number == 0 || pieces_(x, y) != kNone) {
+        if (number == 0 || pieces_(x, y) != kNoObject) {
           continue;
         }
         number_of_.push_back(number);
@@ -80,7 +82,7 @@ class Tracer {
           open.pop_back();
           for (const PixelCorner& step : kBeyond) {
             const PixelCorner next = p + step;
-            if (is_inside(next) && numbers_(next.x, next.y) == number && pieces_(next.x, next.y) == kNone) {
+            if (is_inside(next) && numbers_(next.x, next.y) == number && pieces_(next.x, next.y) == kNoObject) {
               pieces_(next.x, next.y) = piece;
               open.push_back(next);
             }

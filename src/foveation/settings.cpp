@@ -44,16 +44,16 @@ void check_regions(const RegionSampling& regions) {
             "blocks of " + std::to_string(block) + " pixels are not possible",
             "give 1 to " + std::to_string(kMaxBlockPx));
   }
-  constexpr std::string_view kPlace = "`region-eccentricities`";
+  constexpr std::string_view kEccentricities = "`region-eccentricities`";
   // tan(a/2) of eq. (1) ends at 180 degrees.
   const bool cone = regions.shape == RegionShape::cone;
   const double limit = regions.shape == RegionShape::disc ? 90.0 : 180.0;
   for (const double angle : regions.eccentricities_deg) {
-    require(std::isfinite(angle) && angle >= 0 && (cone ? angle <= limit : angle < limit), kPlace,
+    require(std::isfinite(angle) && angle >= 0 && (cone ? angle <= limit : angle < limit), kEccentricities,
             shown(angle) + " degrees are not possible",
             "give " + std::string(cone ? "0 to " : "0 to below ") + shown(limit) + " degrees");
   }
-  require(regions.eccentricities_deg[0] <= regions.eccentricities_deg[1], kPlace,
+  require(regions.eccentricities_deg[0] <= regions.eccentricities_deg[1], kEccentricities,
           "the fovea (" + shown(regions.eccentricities_deg[0]) + ") is wider than the intermediate region (" +
               shown(regions.eccentricities_deg[1]) + ")",
           "give the smaller angle first");

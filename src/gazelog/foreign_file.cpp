@@ -51,8 +51,8 @@ constexpr std::array kForeignKinds{
 std::string names_in_json(std::string_view line) {
   std::string names;
   std::size_t count = 0;
-  constexpr std::size_t kMost = 12;
-  for (std::size_t at = line.find("\":"); at != std::string_view::npos && count < kMost;
+  constexpr std::size_t kMostKeys = 12;
+  for (std::size_t at = line.find("\":"); at != std::string_view::npos && count < kMostKeys;
        at = line.find("\":", at + 1)) {
     const std::size_t begin = line.rfind('"', at - 1);
     if (begin != std::string_view::npos && begin < at) {

@@ -164,12 +164,6 @@ int run_plan(const PlanArguments& arguments) {
   resolving.scope = ResolveScope::plan;
   const ResolvedJob resolved = resolve(arguments.job, resolving);
   const JobSettings& job = resolved.job.settings;
-  print_warnings(resolved.warnings);
-  for (const auto& [name, text] : resolved.decisions) {
-    if (name.starts_with("replaced ") || name == "accumulate" || name == "sampling") {
-      std::fprintf(stderr, "%s: %s\n", name.c_str(), with_flags(text).c_str());
-    }
-  }
   if (!arguments.save_camera.empty()) {
     std::vector<FramePose> frames;
     for (const FrameRequest& request : resolved.plan.frames) {
@@ -177,6 +171,12 @@ int run_plan(const PlanArguments& arguments) {
     }
     check_output_file(arguments.save_camera, arguments.job.settings.overwrite);
     write_camera_path(frames, job.camera_read.rotation_order, arguments.save_camera);
+  }
+  print_warnings(resolved.warnings);
+  for (const auto& [name, text] : resolved.decisions) {
+    if (name.starts_with("replaced ") || name == "accumulate" || name == "sampling") {
+      std::fprintf(stderr, "%s: %s\n", name.c_str(), with_flags(text).c_str());
+    }
   }
   if (arguments.model_gain) {
     const double fps = static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator);
