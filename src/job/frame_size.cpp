@@ -52,7 +52,7 @@ void check_frame_memory(const JobSettings& job) {
                 "give a smaller one");
   }
   const AccumulateSettings window = accumulate_of(job);
-  if (window.mode == AccumulateMode::off) {
+  if (window.past_frames + window.future_frames == 0) {
     return;
   }
   // With the surfaces that filters work on, mostly one a pixel.

@@ -124,7 +124,12 @@ void settle_accumulation(const ViewInputs& inputs, ResolvedJob& resolved) {
   }
   // So many pixels of a window at most, which take some 4 GB, whatever the machine has.
   constexpr double kMostPixels = 1 << 24;
-  bool is_sequence = resolved.frames.size() > 1;
+  // How many samples a quality takes was measured frame by frame.
+  if (job.foveation.target.is_given()) {
+    job.accumulate.mode = AccumulateMode::off;
+    return;
+  }
+  bool is_sequence = resolved.frames.size() > 1 || (job.chunk && job.frames);  // one frame may be a part of many
   if (!is_sequence && job.frames) {
     std::string unused;
     is_sequence =

@@ -88,7 +88,7 @@ Render read_render(const std::string& path) {
     const double all = std::strtod(text_of(header, "samples_per_pixel").c_str(), nullptr);
     if (!(all > 0)) {
       throw Error(ErrorKind::input, path, "does not say how many samples each pixel has, by which it is weighted",
-                  "render it with `aov` samples");
+                  "render it with `accumulate` off, or with `aov` samples");
     }
     const Imath::Box2i window = header.dataWindow();
     render.samples =

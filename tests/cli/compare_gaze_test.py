@@ -18,8 +18,8 @@ class CompareGaze(harness.CliTest):
         return {score["metric"]: score for score in result["sequence"][0]["scores"]}, result
 
     def render(self, folder, *more):
-        self.run_ok("render", "box.gltf", "--size", "64x36", "--frames", "1-3", "--fps", "24", "--quiet", *harness.SCREEN,
-                    "-o", f"{folder}/p.####.exr", "-o", f"{folder}/p.####.png", *more)
+        self.run_ok("render", "box.gltf", "--size", "64x36", "--frames", "1-3", "--fps", "24", "--quiet", "--accumulate", "off",
+                    *harness.SCREEN, "-o", f"{folder}/p.####.exr", "-o", f"{folder}/p.####.png", *more)
 
     def test_gaze_of_the_test_where_the_reference_has_none(self):
         self.write("gaze.csv", harness.moving_gaze())

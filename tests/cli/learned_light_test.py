@@ -50,7 +50,7 @@ class LearnedLight(harness.CliTest):
                 self.assertEqual(self.render(name, *settings, "--resume"), whole)
 
     def test_it_changes_pictures_and_is_counted(self):
-        raw = ["--sampling", "uniform", "--spp", "2", "--filter", "none"]
+        raw = ["--sampling", "uniform", "--spp", "2", "--filter", "none", "--accumulate", "off"]
         learned = self.render("learned", *raw)
         plain = self.render("plain", *raw, learning=("--no-learn-light",))
         self.assertTrue(all(learned[key] != plain[key] for key in plain))

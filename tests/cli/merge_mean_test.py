@@ -9,7 +9,8 @@ from exr_reader import Exr
 
 COURTYARD = [str(harness.SOURCE / "scenes/courtyard/courtyard.gltf"), "--env",
              str(harness.SOURCE / "scenes/courtyard/dusk.hdr"), "--camera", "walk", "--size", "48x27", "--fps", "24",
-             "--screen", "paper", "--exposure", "0", "--quiet", "--exr-compression", "none", "--exr-pixels", "float"]
+             "--screen", "paper", "--exposure", "0", "--quiet", "--exr-compression", "none", "--exr-pixels", "float",
+             "--accumulate", "off"]
 UNIFORM = ["--sampling", "uniform", "--filter", "none"]
 # Fractions of samples, so that each seed gives other pixels one more.
 FOVEATED = ["--region-samples", "8,4,2", "--spp", "1.7", "--gaze-at", "0.4,0.5", "--filter", "none"]

@@ -174,7 +174,7 @@ int run_plan(const PlanArguments& arguments) {
   }
   print_warnings(resolved.warnings);
   for (const auto& [name, text] : resolved.decisions) {
-    if (name.starts_with("replaced ") || name == "accumulate" || name == "sampling") {
+    if (name.starts_with("replaced ") || name == "accumulate" || (name == "sampling" && resolved.gaze)) {
       std::fprintf(stderr, "%s: %s\n", name.c_str(), with_flags(text).c_str());
     }
   }

@@ -13,7 +13,7 @@ void add_window_options(JobSchema& schema) {
           "window: each frame is reconstructed from its own samples and those of the frames around it, joined where "
           "they saw the same places of surfaces that move along with camera, bodies and shapes; what has changed its "
           "light meanwhile does not join. auto: window, of at most 16 million pixels in all, but "
-          "off for a single still")
+          "off for a single still and where a quality is stated")
       .with(Trait::always_stated);
   schema
       .value("--accumulate-past", &JobSettings::accumulate_past, "DURATION", Touch::window,
