@@ -19,7 +19,7 @@ class CompareGaze(harness.CliTest):
 
     def render(self, folder, *more):
         self.run_ok("render", "box.gltf", "--size", "64x36", "--frames", "1-3", "--fps", "24", "--quiet", "--accumulate", "off",
-                    *harness.SCREEN, "-o", f"{folder}/p.####.exr", "-o", f"{folder}/p.####.png", *more)
+                    "--exposure", "0", *harness.SCREEN, "-o", f"{folder}/p.####.exr", "-o", f"{folder}/p.####.png", *more)
 
     def test_gaze_of_the_test_where_the_reference_has_none(self):
         self.write("gaze.csv", harness.moving_gaze())
