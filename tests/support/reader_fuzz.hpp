@@ -198,10 +198,11 @@ inline void read_events(FuzzFolder& folder, std::string_view input) {
 // The input as the trials of a log, and the log cut to each of the first.
 inline void read_trials(FuzzFolder& folder, std::string_view input) {
   const std::string path = log_beside(folder, "trials.csv", input);
-  const GazeLog log = load_gaze_log(path, {});
-  TrialSettings settings;
-  settings.table = path.substr(0, path.size() - 3) + "trials.csv";
-  std::vector<GazeTrial> trials = find_trials(log, settings);
+  GazeLog log = load_gaze_log(path, {});
+  TrialRules rules;
+  rules.table = path.substr(0, path.size() - 3) + "trials.csv";
+  name_trials(log, rules);
+  std::vector<GazeTrial> trials = find_trials(log);
   require(!trials.empty(), "there are trials, or a refusal");
   trials.resize(std::min<std::size_t>(trials.size(), 20));
   for (const GazeTrial& trial : trials) {
