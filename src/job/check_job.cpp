@@ -9,8 +9,8 @@
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/reconstruct.hpp"
 #include "gazetrace/resolve.hpp"
+#include "job/defaults.hpp"
 #include "job/outputs.hpp"
-#include "job/quality_defaults.hpp"
 #include "job/schema/parts.hpp"
 #include "pipeline/quality/adaptive_rates.hpp"
 
@@ -72,7 +72,7 @@ void check_chunk(const JobSettings& job) {
 }  // namespace
 
 void check_job(const Job& asked, const JobSchema& schema) {
-  const Job whole = with_quality_defaults(asked);
+  const Job whole = with_default_sampling(asked);
   const JobSettings& job = whole.settings;
   check_foveation(job.foveation);
   check_filter_name(job.filter, "`filter`");

@@ -41,30 +41,30 @@ bool lasts(const GazeLog* log) {
 
 }  // namespace
 
-bool may_follow_scene(const JobSettings& job, const CameraPath& camera, const GazeLog* log) {
-  return !job.frames && camera.is_static && !lasts(log);
+bool may_follow_scene(const JobSettings& job, const CameraPath& camera, const GazeLog* log, bool is_whole) {
+  return (is_whole || !job.frames) && camera.is_static && !lasts(log);
 }
 
 // As long as the camera's path or, without one, the gaze log or, without one, the motion of the scene.
-std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath& camera, const GazeLog* log,
-                                        std::int64_t taken_off_ns, const Scene* scene, std::string& decision) {
+std::vector<std::int32_t> choose_frames(const JobSettings& job, const ViewInputs& inputs, std::string& decision) {
   if (job.frames) {
     decision = format_frame_list(job.frames->frames);
     return job.frames->frames;
   }
   std::int64_t count = 1;
   std::string reason = "nothing moves";
-  if (!camera.is_static) {
-    count = frames_until(static_cast<double>(camera.end_ns), job);
+  if (!inputs.camera.is_static) {
+    count = frames_until(static_cast<double>(inputs.camera.end_ns), job);
     reason = "as long as the camera's path";
-  } else if (lasts(log)) {
-    const GazeMapping mapping = gaze_mapping(job, log, taken_off_ns);
-    const std::int64_t begin_ns = mapping.event_ns.value_or(log->samples.front().t_ns);
-    const std::int64_t end_ns = log->trial ? log->trial->end_ns : log->samples.back().t_ns;
+  } else if (lasts(inputs.log)) {
+    const GazeMapping mapping = gaze_mapping(job, inputs.log, inputs.taken_off_ns);
+    const std::int64_t begin_ns = mapping.event_ns.value_or(inputs.log->samples.front().t_ns);
+    const std::int64_t end_ns = inputs.log->trial ? inputs.log->trial->end_ns : inputs.log->samples.back().t_ns;
     const double span_ns = static_cast<double>(end_ns) - static_cast<double>(begin_ns);
     count = frames_until(span_ns * mapping.scale + static_cast<double>(mapping.offset_ns), job);
-    reason = log->trial ? fmt::format("as long as trial {}", log->trial->number) : "as long as the gaze log";
-  } else if (const std::int64_t end_ns = last_motion_ns(scene); end_ns > 0) {
+    reason =
+        inputs.log->trial ? fmt::format("as long as trial {}", inputs.log->trial->number) : "as long as the gaze log";
+  } else if (const std::int64_t end_ns = last_motion_ns(inputs.scene); end_ns > 0) {
     count = frames_until(static_cast<double>(end_ns), job);
     reason = "as long as the scene's animation";
   }
@@ -74,6 +74,12 @@ std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath
   }
   decision = fmt::format("{} ({}; `frames` changes it)", format_frame_list(frames), reason);
   return frames;
+}
+
+std::vector<std::int32_t> frames_of_sequence(JobSettings job, const ViewInputs& inputs) {
+  job.frames.reset();
+  std::string unused;
+  return choose_frames(job, inputs, unused);
 }
 
 }  // namespace gazetrace

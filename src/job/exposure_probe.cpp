@@ -11,7 +11,6 @@
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/frame_renderer.hpp"
-#include "job/choose_frames.hpp"
 #include "job/scene.hpp"
 
 namespace gazetrace {
@@ -23,14 +22,10 @@ constexpr double kProbeSpp = 2;  // 512 samples in each of the blocks whose mean
 constexpr double kStepsOfAStop = 100;
 
 // Those of the whole sequence whose views exist, or of the job where its sequence has no length that makes sense.
-std::vector<std::int32_t> frames_of_sequence(const JobSettings& job, const ViewInputs& inputs,
-                                             const PlanSettings& plan) {
-  JobSettings whole = job;
-  whole.frames.reset();
-  std::string unused;
+std::vector<std::int32_t> frames_to_probe(const JobSettings& job, const ViewInputs& inputs, const PlanSettings& plan) {
   std::vector<std::int32_t> frames;
   try {
-    frames = choose_frames(whole, inputs.camera, inputs.log, inputs.taken_off_ns, inputs.scene, unused);
+    frames = frames_of_sequence(job, inputs);
   } catch (const Error&) {
     return plan.frames;
   }
@@ -44,7 +39,7 @@ FramePlan plan_exposure_probe(const JobSettings& job, const ViewInputs& inputs, 
   if (job.exposure.mode == ExposureMode::fixed) {
     return {};
   }
-  const std::vector<std::int32_t> all = frames_of_sequence(job, inputs, plan);
+  const std::vector<std::int32_t> all = frames_to_probe(job, inputs, plan);
   const bool rests = inputs.camera.is_static && (inputs.scene == nullptr || !moves(*inputs.scene));
   const std::size_t count = rests ? 1 : std::min(all.size(), kMostProbes);
   plan.frames.clear();

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "gazetrace/resolve.hpp"
-#include "job/judged_plan.hpp"
+#include "job/choose_frames.hpp"
 
 namespace gazetrace {
 

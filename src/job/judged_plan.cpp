@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "gazetrace/error.hpp"
-#include "job/choose_frames.hpp"
 #include "job/judged_frames.hpp"
 #include "job/outputs.hpp"
 #include "job/scene.hpp"
@@ -30,11 +29,7 @@ struct SequenceLength {
 };
 
 SequenceLength sequence_length(const JobSettings& job, const ViewInputs& inputs) {
-  JobSettings whole = job;
-  whole.frames.reset();
-  std::string decision;
-  const std::size_t frames =
-      choose_frames(whole, inputs.camera, inputs.log, inputs.taken_off_ns, inputs.scene, decision).size();
+  const std::size_t frames = frames_of_sequence(job, inputs).size();
   if (frames > 1) {
     return {static_cast<std::int32_t>(frames), true};
   }

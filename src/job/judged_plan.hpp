@@ -4,18 +4,9 @@
 
 #include <cstdint>
 
-#include "gazetrace/resolve.hpp"
+#include "job/choose_frames.hpp"
 
 namespace gazetrace {
-
-// What the views of a sequence follow from. Scene and log may be missing.
-struct ViewInputs {
-  const CameraPath& camera;
-  const GazeLog* log = nullptr;
-  std::int64_t taken_off_ns = 0;  // of the log's times
-  const Scene* scene = nullptr;
-  const ProcessedGaze* steering = nullptr;  // the log as it steers, where it was processed
-};
 
 // The sequence is as long as the job is without `frames`, so that all its parts judge the same; where nothing moves, it
 // is a still or, if there are `frames`, a second of rest. `plan` are the settings of the job's own plan. Error(usage)

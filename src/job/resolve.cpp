@@ -5,20 +5,18 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <cstdint>
 #include <utility>
 
 #include "gazetrace/error.hpp"
 #include "job/choose_frames.hpp"
+#include "job/defaults.hpp"
 #include "job/exposure_probe.hpp"
 #include "job/frame_size.hpp"
 #include "job/gaze_inputs.hpp"
 #include "job/job_plan.hpp"
 #include "job/judged_plan.hpp"
 #include "job/plan_settings.hpp"
-#include "job/quality_defaults.hpp"
-#include "job/saving.hpp"
+#include "job/sampling_notes.hpp"
 #include "job/scene.hpp"
 #include "job/scene_camera.hpp"
 
@@ -74,16 +72,10 @@ void load_scene_of(const JobSettings& job, const ResolveOptions& options, Resolv
   append(resolved.warnings, resolved.scene->environment.warnings);
 }
 
-// The same job for the whole sequence, whichever of its frames are wanted.
-JobSettings of_whole_sequence(JobSettings job) {
-  job.frames.reset();
-  return job;
-}
-
 // Whether the scene's animation may decide how many frames are wanted, how many are judged, or whether they join.
 bool length_needs_scene(const JobSettings& job, const CameraPath& camera, const GazeLog* log) {
-  const bool asks_whole = judges_sequence(job) || job.accumulate.mode == AccumulateMode::automatic;
-  return asks_whole ? may_follow_scene(of_whole_sequence(job), camera, log) : may_follow_scene(job, camera, log);
+  const bool is_whole = judges_sequence(job) || job.accumulate.mode == AccumulateMode::automatic;
+  return may_follow_scene(job, camera, log, is_whole);
 }
 
 const Scene* scene_of(const ResolveOptions& options, const ResolvedJob& resolved) {
@@ -116,56 +108,12 @@ std::string sampling_without_gaze(const FoveationSettings& foveation) {
   return rate + " everywhere: there is no gaze";
 }
 
-// A single frame of a sequence joins as it does in the whole of it, so that it is the same picture.
-void settle_accumulation(const ViewInputs& inputs, ResolvedJob& resolved) {
-  JobSettings& job = resolved.job.settings;
-  if (job.accumulate.mode != AccumulateMode::automatic) {
-    return;
-  }
-  // So many pixels of a window at most, which take some 4 GB, whatever the machine has.
-  constexpr double kMostPixels = 1 << 24;
-  // How many samples a quality takes was measured frame by frame.
-  if (job.foveation.target.is_given()) {
-    job.accumulate.mode = AccumulateMode::off;
-    return;
-  }
-  bool is_sequence = resolved.frames.size() > 1 || (job.chunk && job.frames);  // one frame may be a part of many
-  if (!is_sequence && job.frames) {
-    std::string unused;
-    is_sequence =
-        choose_frames(of_whole_sequence(job), inputs.camera, inputs.log, inputs.taken_off_ns, inputs.scene, unused)
-            .size() > 1;
-  }
-  job.accumulate.mode = is_sequence ? AccumulateMode::window : AccumulateMode::off;
-  if (!is_sequence) {
-    return;
-  }
-  const double most = std::max(std::floor((kMostPixels / job.size.width / job.size.height - 1) / 2), 1.0);
-  const auto most_ns = static_cast<std::int64_t>(
-      std::ceil(most * 1e9 * static_cast<double>(job.fps.denominator) / static_cast<double>(job.fps.numerator)));
-  job.accumulate_past.ns = std::min(job.accumulate_past.ns, most_ns);
-  job.accumulate_future.ns = std::min(job.accumulate_future.ns, most_ns);
-  const AccumulateSettings window = accumulate_of(job);
-  resolved.decisions.emplace_back("accumulate", fmt::format("window: each frame joins {} before it and {} after it",
-                                                            window.past_frames, window.future_frames));
-}
-
-// About the gaze the frame's mean is given and not the rate of the gaze, which the screen's pixels a degree decide.
-void settle_rate(const GazeLog* log, JobSettings& job) {
-  constexpr double kUsualMeanSpp = 2;
-  const auto* const density = std::get_if<DensitySampling>(&job.foveation.sampling);
-  if (log != nullptr && density != nullptr && !density->from_picture && !job.foveation.spp &&
-      !job.foveation.target.is_given()) {
-    job.foveation.spp = kUsualMeanSpp;
-  }
-}
-
 void choose_wanted_frames(const ViewInputs& inputs, ResolvedJob& resolved) {
   const JobSettings& job = resolved.job.settings;
   std::string decision;
-  resolved.frames = choose_frames(job, inputs.camera, inputs.log, inputs.taken_off_ns, inputs.scene, decision);
+  resolved.frames = choose_frames(job, inputs, decision);
   resolved.decisions.emplace_back("frames", decision);
-  settle_accumulation(inputs, resolved);
+  settle_accumulation(inputs, resolved.frames, resolved.job, resolved.decisions);
   settle_rate(inputs.log, resolved.job.settings);
   if (inputs.log == nullptr && !follows_picture(job.foveation.sampling)) {
     resolved.decisions.emplace_back("sampling", sampling_without_gaze(job.foveation));
@@ -305,7 +253,7 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
     load_viewing(resolved);
     return resolved;
   }
-  resolved.job = with_quality_defaults(job, &resolved.decisions);
+  resolved.job = with_default_sampling(job, &resolved.decisions);
   check_job(resolved.job);
   if (options.tell_idle) {
     resolved.warnings = idle_option_warnings(resolved.job);

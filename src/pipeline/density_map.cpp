@@ -45,7 +45,10 @@ PlannedRates planned_rates(const FoveationSettings& settings, const FrameRequest
     return {spp, spp};
   }
   const RegionSampling* const regions = regions_of(settings.sampling);
-  const double own_most = regions != nullptr ? regions->samples[0] : kUsualSpp;
+  const auto* const density = std::get_if<DensitySampling>(&settings.sampling);
+  const double own_most = regions != nullptr   ? regions->samples[0]
+                          : density != nullptr ? density->full_rate_spp
+                                               : kUsualSpp;
   // By the sampling's own counts, to which `spp` is in proportion.
   FoveationSettings own_rates = settings;
   own_rates.spp.reset();

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "gazetrace/resolve.hpp"
-#include "job/quality_defaults.hpp"
+#include "job/defaults.hpp"
 
 namespace gazetrace {
 namespace {
@@ -103,7 +103,7 @@ Job test_job(const SweepRequest& request, const SweepFileScene& scene, const Swe
     assign(job, gaze->options, request.schema);
   }
   assign(job, setting.options, request.schema);
-  job = with_quality_defaults(std::move(job));
+  job = with_default_sampling(std::move(job));
   // The row's baselines use the same one.
   job.settings.filter = filter_of(job.settings).name;
   return job;

@@ -12,13 +12,12 @@ void add_window_options(JobSchema& schema) {
           Touch::window,
           "window: each frame is reconstructed from its own samples and those of the frames around it, joined where "
           "they saw the same places of surfaces that move along with camera, bodies and shapes; what has changed its "
-          "light meanwhile does not join. auto: window, of at most 16 million pixels in all, but "
-          "off for a single still and where a quality is stated")
+          "light meanwhile does not join. auto: window for a sequence, off for a single still and for a stated quality")
       .with(Trait::always_stated);
   schema
       .value("--accumulate-past", &JobSettings::accumulate_past, "DURATION", Touch::window,
              "window: reads the frames of so much time before each frame; those outside the rendered range are traced "
-             "for it")
+             "for it. By default as much as keeps a window to 16 million pixels, but a frame on each side")
       .at_least(0)
       .idle_when({without_window()});
   schema

@@ -9,7 +9,7 @@
 
 #include "gazetrace/job.hpp"
 #include "gazetrace/resolve.hpp"
-#include "job/quality_defaults.hpp"
+#include "job/defaults.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace gazetrace {
@@ -160,7 +160,7 @@ TEST(Job, AStatedQualityKeepsWhatIsSaidOfOtherSamplings) {
   Job job;
   set_option(job, "region-samples", "5,4,3");
   set_option(job, "target-relmse", "0.01");
-  const Job chosen = with_quality_defaults(job);
+  const Job chosen = with_default_sampling(job);
   EXPECT_EQ(option_text(chosen, "sampling"), "adaptive");
   EXPECT_EQ(option_text(chosen, "region-samples"), "5,4,3");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/saving.hpp"
+#include "job/sampling_notes.hpp"
 
 #include <fmt/format.h>
 
