@@ -63,7 +63,7 @@ int run_here(const FarmPlan& plan, const std::vector<std::size_t>& chunks, int p
 
 // Made before the first thread, so that its signals reach no other; the tasks have grace times of their own.
 std::unique_ptr<Interruption> watch_signals(const std::string& engine) {
-  // What hands tasks over to another engine starts programs, which would inherit that signals wait.
+  // Programs of other engines would inherit the blocked signals.
   return engine == "local" ? std::make_unique<Interruption>(std::chrono::hours(24), std::nullopt) : nullptr;
 }
 

@@ -190,7 +190,7 @@ Command add_sweep_command(CLI::App& app, const Invocation& /*invocation*/) {
               "Checks the plan, prints its rows and how much there is to do; with --chunk 1/N, how they are divided");
   schema.value(
       "--grace", &SweepArguments::grace, "DURATION",
-      "After a signal to end (TERM, INT, USR1, XCPU), the time to finish the frame in hand; the row that it is "
+      "After a signal to end (TERM, INT, HUP, USR1, XCPU), the time to finish the frame in hand; the row that it is "
       "of is measured again by the next call");
   schema.value("--max-time", &SweepArguments::max_time, "DURATION",
                "Ends as if by a signal so long after its beginning, --grace included; scenes that are loaded and "
