@@ -22,10 +22,10 @@ void add_farm_options(JobSchema& schema) {
       .decides_nothing()
       .with(Trait::one_run);
   schema
-      .value(
-          "--grace", &JobSettings::grace, "DURATION", Touch::output,
-          "After a signal to end (TERM, INT, HUP, USR1, XCPU), the time to finish the frame in hand; then it is given up, "
-          "and the run goes on with --resume")
+      .value("--grace", &JobSettings::grace, "DURATION", Touch::output,
+             "After a signal to end (TERM, INT, HUP, USR1, XCPU), the time to finish the frame in hand; then it is "
+             "given up, "
+             "and the run goes on with --resume")
       .decides_nothing()
       .within(0, 1e18)
       .with(Trait::one_run);
