@@ -35,7 +35,7 @@ std::vector<fs::path> documents() {
       }
     }
   }
-  for (const char* name : {"README.md", "CHANGELOG.md"}) {
+  for (const char* name : {"README.md", "CHANGELOG.md", "CONTRIBUTING.md"}) {
     found.push_back(kSource / name);
   }
   std::sort(found.begin(), found.end());

@@ -112,9 +112,10 @@ class Documents(harness.CliTest):
         return len(ran)
 
     def test_readme(self):
-        self.assertGreaterEqual(self.run_document("README.md"), 7)
-        if shutil.which("ffmpeg"):  # the example's video lies beside its frames
-            self.assertGreater((self.folder / "out/example/gaze.mp4").stat().st_size, 1000)
+        if not shutil.which("ffmpeg"):
+            self.skipTest("ffmpeg is not here")
+        self.assertEqual(self.run_document("README.md"), 1)
+        self.assertGreater((self.folder / "out/example/gaze.mp4").stat().st_size, 1000)
 
     def test_examples(self):
         self.assertEqual(self.run_document("examples/README.md"), 1)
