@@ -9,11 +9,11 @@
 // it; its text was not at hand when they were written down here.
 //
 // Ours: velocities are taken over EventSettings::velocity_window_ns (20 ms) instead of from sample to sample, where
-// noise of 0.05 deg at 500 Hz alone comes near 70 deg/s (docs/gaze-agreement.md holds both against each other and
-// against the truth). The window of the paper runs over the trace without its saccades; here it does not reach over a
-// saccade or a loss. Samples too close to the end of such a stretch to fill a window are what the sample before them
-// is; in a stretch shorter than the window, the dispersion of all of it decides. Fixations and pursuits shorter than
-// EventSettings::min_fixation_ns are dropped.
+// noise of 0.05 deg at 500 Hz alone comes near 70 deg/s (tests/benchmarks/book/gaze-agreement.md holds both against
+// each other and against the truth). The window of the paper runs over the trace without its saccades; here it does not
+// reach over a saccade or a loss. Samples too close to the end of such a stretch to fill a window are what the sample
+// before them is; in a stretch shorter than the window, the dispersion of all of it decides. Fixations and pursuits
+// shorter than EventSettings::min_fixation_ns are dropped.
 #include <algorithm>
 #include <cstddef>
 
