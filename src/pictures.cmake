@@ -22,7 +22,7 @@ add_dependencies(gazetrace gazetrace_pictures)
 
 # The library refuses a module that was compiled with other headers than its own.
 set(build ${PROJECT_VERSION})
-foreach(header core/picture_module.hpp core/image_io.hpp)
+foreach(header core/picture_module.hpp core/image_io.hpp core/primaries.hpp)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${header})
   file(SHA256 ${CMAKE_CURRENT_SOURCE_DIR}/${header} digest)
   string(APPEND build "-${digest}")

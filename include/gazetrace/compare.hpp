@@ -146,10 +146,11 @@ struct FrameFacts {
 // Display images state all of this but the frame rate; DPX files leave out the gaze, too.
 FrameFacts read_frame_facts(const std::string& path);
 
-// A picture with what its header states. An .exr holds linear light, every other format code values.
+// A picture with what its header states. Floats are linear light, everything else is code values.
 struct ComparedPicture {
   MetricPicture picture;
   bool is_linear = false;
+  std::array<int, 2> first_px{};  // the pixel of the picture plane at which its display window begins, of an EXR
   FrameFacts facts;
 };
 ComparedPicture read_compared_picture(const std::string& path);

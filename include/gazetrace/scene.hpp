@@ -191,9 +191,12 @@ SceneEstimate estimate_scene(const std::string& path, const SceneReadOptions& op
 // an error.
 Scene load_scene(const std::string& path, const SceneReadOptions& options = {});
 
-// Reads a latitude-longitude .hdr or .exr; pixels are multiplied by 2^exposure_ev. Error(input) for non-finite pixels.
-// Negative values, which lossy compression leaves in dark areas, become 0 with a warning.
-Environment load_environment(const std::string& path, double rotation_deg = 0, double exposure_ev = 0);
+// Reads a latitude-longitude .hdr, .exr or other picture; pixels are multiplied by 2^exposure_ev. Error(input) for cube
+// maps, for non-finite pixels, and for pictures that take more than `memory_bytes` (0: most_memory_bytes()). With a
+// warning, infinite halves become 65504, display values the light of sRGB, and negative values, which lossy compression
+// leaves in dark areas, 0.
+Environment load_environment(const std::string& path, double rotation_deg = 0, double exposure_ev = 0,
+                             std::uint64_t memory_bytes = 0);
 Environment constant_environment(const Vec3f& radiance);
 // A clear sky without a sun disc: an analytic gradient (zenith, horizon, ground) with a soft glow around the sun's
 // direction, smooth enough to need few samples.

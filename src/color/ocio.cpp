@@ -251,6 +251,16 @@ std::string enter_config(const LoadedConfig& loaded, const ColorSettings& settin
   return config.getColorSpace(ocio::ROLE_INTERCHANGE_SCENE)->getName();
 }
 
+// Whether a view shows numbers as they are.
+bool shows_data(const ocio::Config& config, const std::string& display, const std::string& view) {
+  std::string name = config.getDisplayViewColorSpaceName(display.c_str(), view.c_str());
+  if (name == ocio::OCIO_VIEW_USE_DISPLAY_NAME) {  // of a view that displays share
+    name = display;
+  }
+  const auto space = config.getColorSpace(name.c_str());
+  return space && space->isData();
+}
+
 }  // namespace
 
 struct OcioView::Impl {
@@ -282,13 +292,20 @@ OcioView::OcioView(const ColorSettings& settings) : impl_(std::make_unique<Impl>
       choose("view", settings.view, config.getDefaultView(display.c_str()), views, place + ", display " + display);
 
   auto group = ocio::GroupTransform::Create();
-  const std::string source = enter_config(loaded, settings, *group);
+  const bool is_data = shows_data(config, display, view);
+  const std::string source = is_data && settings.input.empty() ? "" : enter_config(loaded, settings, *group);
+  if (!settings.look.empty()) {
+    check_looks(config, settings.look, place);
+  }
+  if (is_data && !settings.look.empty()) {
+    throw Error(ErrorKind::usage, place, "view '" + view + "' shows the picture's own numbers, which no look changes",
+                "leave `look` out, or choose another view");
+  }
   auto display_view = ocio::DisplayViewTransform::Create();
   display_view->setSrc(source.c_str());
   display_view->setDisplay(display.c_str());
   display_view->setView(view.c_str());
   if (!settings.look.empty()) {
-    check_looks(config, settings.look, place);
     auto look = ocio::LookTransform::Create();
     look->setSrc(source.c_str());
     look->setDst(source.c_str());
@@ -296,7 +313,9 @@ OcioView::OcioView(const ColorSettings& settings) : impl_(std::make_unique<Impl>
     group->appendTransform(look);
     display_view->setLooksBypass(true);
   }
-  group->appendTransform(display_view);
+  if (!is_data) {
+    group->appendTransform(display_view);
+  }
 
   try {
     const auto processor = config.getProcessor(group);

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <filesystem>
 #include <limits>
+#include <utility>
 
 #include "core/image_io.hpp"
 #include "core/parallel.hpp"
@@ -12,30 +12,19 @@
 #include "metrics/code_values.hpp"
 
 namespace gazetrace {
-namespace {
-
-namespace fs = std::filesystem;
-
-bool is_exr(const std::string& path) {
-  std::string suffix = fs::path(path).extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return suffix == ".exr";
-}
-
-}  // namespace
 
 ComparedPicture read_compared_picture(const std::string& path) {
+  Picture read = read_picture(path);
   ComparedPicture result;
-  result.is_linear = is_exr(path);
-  (result.is_linear ? result.picture.light : result.picture.code) =
-      result.is_linear ? read_exr_rgb(path) : read_image_rgb_float(path);
+  result.is_linear = read.facts.is_linear;
+  result.first_px = {read.facts.x_px, read.facts.y_px};
+  (result.is_linear ? result.picture.light : result.picture.code) = std::move(read.rgb);
   result.facts = read_frame_facts(path);
   return result;
 }
 
 ImageGray read_pooling_weights(const std::string& path) {
-  const ImageRgb picture = is_exr(path) ? read_exr_rgb(path) : read_image_rgb_float(path);
+  const ImageRgb picture = read_picture(path).rgb;
   ImageGray weights(picture.width_px, picture.height_px);
   std::transform(picture.pixels.begin(), picture.pixels.end(), weights.pixels.begin(),
                  [](const Vec3f& value) { return value.x; });

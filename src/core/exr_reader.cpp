@@ -6,18 +6,18 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
-#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfPixelType.h>
-#include <OpenEXR/ImfTestFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <filesystem>
 #include <iterator>
 #include <system_error>
+#include <utility>
 
 #include "gazetrace/error.hpp"
 
@@ -89,20 +89,6 @@ void check_exr_windows(const Imf::Header& header, std::uint64_t bytes, const std
 
 namespace {
 
-// Of a deep file OpenEXR would lay each pixel's samples over each other, where they have a depth. The first part is the
-// one that is read.
-template <class Source>
-void refuse_deep(Source&& source, const std::string& place) {
-  if (!Imf::isDeepOpenExrFile(source)) {
-    return;
-  }
-  const Imf::MultiPartInputFile file(source, 0);
-  if (Imf::isDeepData(file.header(0).type())) {
-    throw Error(ErrorKind::input, place, "a deep EXR (" + file.header(0).type() + ") has several values for a pixel",
-                "flatten it");
-  }
-}
-
 std::string joined(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 8;
   std::string text;
@@ -112,108 +98,209 @@ std::string joined(const std::vector<std::string>& names) {
   return names.size() > kMost ? text + ", ..." : text;
 }
 
+Imath::Box2i overlap(const Imath::Box2i& a, const Imath::Box2i& b) {
+  return {{std::max(a.min.x, b.min.x), std::max(a.min.y, b.min.y)},
+          {std::min(a.max.x, b.max.x), std::min(a.max.y, b.max.y)}};
+}
+
+int width_of(const Imath::Box2i& window) {
+  return window.max.x - window.min.x + 1;
+}
+
 }  // namespace
 
 struct ExrReader::File {
   std::unique_ptr<MemoryStream> stream;
-  std::unique_ptr<Imf::InputFile> input;
+  std::unique_ptr<Imf::MultiPartInputFile> input;
+};
+
+// Channels that are the color of one picture.
+struct ExrReader::Light {
+  int part = 0;
+  std::string layer;                  // with its dot; empty: none
+  std::vector<std::string> channels;  // three or, with alpha, four; or none
 };
 
 ExrReader::ExrReader(const PictureSource& source, const std::string& place)
-    : file_(std::make_unique<File>()), place_(place) {
+    : file_(std::make_unique<File>()), place_(place), file_bytes_(size_of(source)) {
   try {
     if (source.bytes.empty()) {
-      refuse_deep(source.path.c_str(), place);
-      file_->input = std::make_unique<Imf::InputFile>(source.path.c_str(), 0);
+      file_->input = std::make_unique<Imf::MultiPartInputFile>(source.path.c_str(), 0);
     } else {
-      refuse_deep(MemoryStream(source.bytes), place);
       file_->stream = std::make_unique<MemoryStream>(source.bytes);
-      file_->input = std::make_unique<Imf::InputFile>(*file_->stream, 0);
+      file_->input = std::make_unique<Imf::MultiPartInputFile>(*file_->stream, 0);
     }
-  } catch (const Error&) {
-    throw;
   } catch (const std::bad_alloc&) {
     throw Error(ErrorKind::runtime, place, "there is no memory for the EXR", "make it smaller");
   } catch (const std::exception& e) {
     throw Error(ErrorKind::input, place, std::string("cannot read the EXR: ") + e.what());
   }
-  const Imf::Header& header = file_->input->header();
-  check_exr_windows(header, size_of(source), place);
-  const Imath::Box2i& window = header.displayWindow();
   format = "openexr";
-  width_px = window.max.x - window.min.x + 1;
-  height_px = window.max.y - window.min.y + 1;
-  is_deep = true;
-  is_linear = true;
-  std::uint64_t bytes = 0;
-  for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
-    names.emplace_back(channel.name());
-    bytes += channel.channel().type == Imf::HALF ? 2 : 4;
+  facts.is_deep = facts.is_linear = true;
+  for (int part = 0; part < parts(); ++part) {
+    for (auto channel = header(part).channels().begin(); channel != header(part).channels().end(); ++channel) {
+      if (!Imf::isDeepData(header(part).type())) {
+        all_.push_back({part, channel.name()});
+      }
+    }
   }
-  channels = static_cast<int>(names.size());
-  decoded_bytes = bytes * std::max(pixels_of(window), pixels_of(header.dataWindow()));
+  // Of a deep part OpenEXR would lay each pixel's samples over each other, where they have a depth.
+  if (all_.empty() && Imf::isDeepData(header(0).type())) {
+    throw Error(ErrorKind::input, place, "a deep EXR (" + header(0).type() + ") has several values for a pixel",
+                "flatten it");
+  }
 }
 
 ExrReader::~ExrReader() = default;
 
-bool ExrReader::has(const std::string& name) const {
-  return std::find(names.begin(), names.end(), name) != names.end();
+int ExrReader::parts() const {
+  return file_->input->parts();
 }
 
-std::vector<std::string> ExrReader::color_of(const std::string& layer) const {
+const Imf::Header& ExrReader::header(int part) const {
+  return file_->input->header(part);
+}
+
+ExrReader::Light ExrReader::light_of(int part, const std::string& layer) const {
+  const auto has = [&](const std::string& name) {
+    return std::any_of(all_.begin(), all_.end(),
+                       [&](const ExrChannel& channel) { return channel.part == part && channel.name == name; });
+  };
   for (const char* const letters : {"RGBA", "rgba"}) {
-    std::vector<std::string> color;
+    Light light{part, layer, {}};
     for (const char* letter = letters; *letter != 0 && has(layer + *letter); ++letter) {
-      color.push_back(layer + *letter);
+      light.channels.push_back(layer + *letter);
     }
-    if (color.size() >= 3) {
-      return color;
+    if (light.channels.size() >= 3) {
+      return light;
     }
   }
   return {};
 }
 
-// With their dots: the only one that has color, or of several those that their name says are what is seen.
-std::vector<std::string> ExrReader::layers_of_color() const {
-  std::vector<std::string> layers;
-  for (const std::string& name : names) {
-    const std::string layer = name.substr(0, name.rfind('.') + 1);
-    if (!layer.empty() && !color_of(layer).empty() && name == color_of(layer).front()) {
-      layers.push_back(layer);
+// All that are color; of several those whose name says that they are what is seen, or else those without a layer's
+// name.
+std::vector<ExrReader::Light> ExrReader::lights() const {
+  std::vector<Light> all;
+  for (const ExrChannel& channel : all_) {
+    const Light light = light_of(channel.part, channel.name.substr(0, channel.name.rfind('.') + 1));
+    if (!light.channels.empty() && channel.name == light.channels.front()) {
+      all.push_back(light);
     }
+  }
+  const auto only = [&](const auto& is_wanted) {
+    std::vector<Light> some;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(some), is_wanted);
+    all = all.size() > 1 && !some.empty() ? some : all;
+  };
+  const auto is_root = [](const Light& light) { return light.layer.empty(); };
+  if (parts() == 1) {
+    only(is_root);
   }
   for (const char* const usual : {"combined", "beauty", "rgba"}) {
-    std::vector<std::string> seen;
-    std::copy_if(layers.begin(), layers.end(), std::back_inserter(seen), [&](const std::string& layer) {
-      return ("." + lower(layer)).ends_with("." + std::string(usual) + ".");
+    only([&](const Light& light) {
+      const Imf::Header& part = header(light.part);
+      const std::string end = "." + std::string(usual) + ".";
+      return ("." + lower(light.layer)).ends_with(end) ||
+             (light.layer.empty() && part.hasName() && ("." + lower(part.name()) + ".").ends_with(end));
     });
-    if (layers.size() > 1 && !seen.empty()) {
-      return seen;
-    }
   }
-  return layers;
+  only(is_root);
+  return all;
+}
+
+// Y or R that no other color stands beside.
+std::vector<ExrReader::Light> ExrReader::gray_of_one_part() const {
+  std::vector<std::string> names;
+  for (const ExrChannel& channel : all_) {
+    names.push_back(channel.name);
+  }
+  const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  const auto alone = [&](const char* name, const std::vector<const char*>& others) {
+    return has(name) && std::none_of(others.begin(), others.end(), has);
+  };
+  if (parts() > 1 || !(alone("Y", {"RY", "BY", "R", "G", "B", "X"}) || alone("R", {"G", "B", "Y"}))) {
+    return {};
+  }
+  Light gray{0, "", {has("Y") ? "Y" : "R"}};
+  if (has("A")) {
+    gray.channels.emplace_back("A");
+  }
+  return {gray};
+}
+
+void ExrReader::refuse(const std::vector<Light>& lights) const {
+  std::vector<std::string> names;
+  for (const ExrChannel& channel : all_) {
+    const Imf::Header& part = header(channel.part);
+    names.push_back((parts() > 1 && part.hasName() ? part.name() + ":" : "") + channel.name);
+  }
+  const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  const std::string kind = lights.size() > 1        ? "several layers of color, and nothing tells which is its light"
+                           : has("RY") && has("BY") ? "luminance and chroma, which are not read"
+                                                    : "none of which are its light";
+  throw Error(ErrorKind::input, place_, "the EXR has the channels " + joined(names) + ", " + kind,
+              "name a picture with R, G and B, of which one layer is the only one or is called Combined, beauty or "
+              "rgba, or with Y or R alone, which is grey");
 }
 
 void ExrReader::choose_light() {
-  const auto alone = [&](const char* name, const std::vector<const char*>& others) {
-    return has(name) && std::none_of(others.begin(), others.end(), [&](const char* other) { return has(other); });
-  };
-  const std::vector<std::string> layers = layers_of_color();
-  light_ = color_of("");
-  if (light_.empty() && (alone("Y", {"RY", "BY", "R", "G", "B", "X"}) || alone("R", {"G", "B", "Y"}))) {
-    light_ = {has("Y") ? "Y" : "R"};
-    if (has("A")) {
-      light_.emplace_back("A");
+  std::vector<Light> found = lights();
+  if (found.empty()) {
+    found = gray_of_one_part();
+  }
+  if (found.size() != 1) {
+    refuse(found);
+  }
+  const std::string& layer = found.front().layer;
+  facts.layer = layer.substr(0, layer.empty() ? 0 : layer.size() - 1);
+  take(found.front().part, found.front().channels);
+  facts.alpha = channels % 2 == 0 ? Alpha::premultiplied : Alpha::none;
+}
+
+void ExrReader::choose_channel(const std::vector<std::string>& wanted) {
+  for (const std::string& name : wanted) {
+    const auto found = std::find_if(all_.begin(), all_.end(), [&](const ExrChannel& c) { return c.name == name; });
+    if (all_.size() > 1 && found != all_.end()) {
+      take(found->part, {name});
+      return;
     }
-  } else if (light_.empty() && layers.size() == 1) {
-    light_ = color_of(layers.front());
   }
-  if (light_.empty()) {
-    throw Error(ErrorKind::input, place_, "the EXR has the channels " + joined(names) + ", none of which are its light",
-                "name a picture with R, G and B, of which one layer is the only one or is called Combined, beauty or "
-                "rgba, or with Y or R alone, which is grey");
+  if (all_.size() != 1) {
+    std::string names;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      names += (i == 0 ? "" : i + 1 < wanted.size() ? ", " : " or ") + wanted[i];
+    }
+    throw Error(ErrorKind::input, place_, "the EXR has several channels, and none of them is " + names,
+                "write a picture of one channel");
   }
-  channels = static_cast<int>(light_.size());
+  take(all_.front().part, {all_.front().name});
+}
+
+void ExrReader::take(int part, std::vector<std::string> chosen) {
+  part_ = part;
+  chosen_ = std::move(chosen);
+  channels = static_cast<int>(chosen_.size());
+  const Imf::Header& from = header(part);
+  check_exr_windows(from, file_bytes_, place_);
+  const Imath::Box2i& window = from.displayWindow();
+  facts.x_px = window.min.x;
+  facts.y_px = window.min.y;
+  facts.width_px = width_of(window);
+  facts.height_px = window.max.y - window.min.y + 1;
+  facts.part = from.hasName() ? from.name() : "";
+  facts.is_half = from.channels()[chosen_.front()].type == Imf::HALF;
+  facts.is_cube_map = Imf::hasEnvmap(from) && Imf::envmap(from) == Imf::ENVMAP_CUBE;
+  if (Imf::hasChromaticities(from)) {
+    const Imf::Chromaticities& c = Imf::chromaticities(from);
+    const auto point = [](const Imath::V2f& v) { return Vec2d{static_cast<double>(v.x), static_cast<double>(v.y)}; };
+    facts.primaries = Primaries{point(c.red), point(c.green), point(c.blue), point(c.white)};
+  }
+  std::uint64_t bytes = 0;
+  for (auto channel = from.channels().begin(); channel != from.channels().end(); ++channel) {
+    bytes += channel.channel().type == Imf::HALF ? 2U : 4U;
+  }
+  decoded_bytes = bytes * std::max(pixels_of(window), pixels_of(from.dataWindow()));
 }
 
 std::string ExrReader::read(int /*count*/, std::span<std::uint8_t> /*values*/) {
@@ -221,42 +308,51 @@ std::string ExrReader::read(int /*count*/, std::span<std::uint8_t> /*values*/) {
 }
 
 std::string ExrReader::read(int count, std::span<float> values) {
-  return read(std::span<const std::string>(light_).first(static_cast<std::size_t>(count)), values);
+  const auto step = static_cast<std::size_t>(count);
+  std::vector<ExrTarget> targets;
+  for (std::size_t c = 0; c < step; ++c) {
+    targets.push_back({chosen_[c], values.data() + c, step});
+  }
+  std::fill(values.begin(), values.end(), 0.0F);
+  return read(part_, header(part_).displayWindow(), targets);
 }
 
-std::string ExrReader::read(std::span<const std::string> wanted, std::span<float> values) {
-  const Imath::Box2i data = file_->input->header().dataWindow();
-  const Imath::Box2i picture = file_->input->header().displayWindow();
-  const Imath::Box2i both({std::max(data.min.x, picture.min.x), std::max(data.min.y, picture.min.y)},
-                          {std::min(data.max.x, picture.max.x), std::min(data.max.y, picture.max.y)});
-  const std::size_t step = wanted.size();
-  // One line at a time, which all lines share; OpenEXR keeps the block that it has unpacked for the next.
-  std::vector<float> line(static_cast<std::size_t>(data.max.x - data.min.x + 1) * step);
-  std::fill(values.begin(), values.end(), 0.0F);
-  for (const std::string& name : wanted) {
-    const Imf::Channel& channel = file_->input->header().channels()[name];
+std::string ExrReader::read(int part, const Imath::Box2i& window, std::span<const ExrTarget> targets) {
+  const Imath::Box2i data = header(part).dataWindow();
+  const Imath::Box2i both = overlap(data, window);
+  for (const ExrTarget& target : targets) {
+    const Imf::Channel& channel = header(part).channels()[target.name];
     if (channel.xSampling != 1 || channel.ySampling != 1) {
       throw Error(ErrorKind::input, place_,
-                  "the EXR's channel " + bounded(name, 40) + " is subsampled, " + std::to_string(channel.xSampling) +
-                      " x " + std::to_string(channel.ySampling) + " pixels a value",
+                  "the EXR's channel " + bounded(target.name, 40) + " is subsampled, " +
+                      std::to_string(channel.xSampling) + " x " + std::to_string(channel.ySampling) + " pixels a value",
                   "write it with a value for each pixel");
     }
   }
+  // One line at a time, which all lines share; OpenEXR keeps the block that it has unpacked for the next.
+  const auto width = static_cast<std::size_t>(width_of(data));
+  std::vector<float> line(width * targets.size());
   try {
+    Imf::InputPart input(*file_->input, part);
     Imf::FrameBuffer buffer;
-    for (std::size_t c = 0; c < step; ++c) {
-      char* const first = reinterpret_cast<char*>(line.data() + c);
-      const std::ptrdiff_t to_left = std::ptrdiff_t{data.min.x} * static_cast<std::ptrdiff_t>(step * sizeof(float));
-      buffer.insert(wanted[c], Imf::Slice(Imf::FLOAT, first - to_left, step * sizeof(float), 0));
+    for (std::size_t c = 0; c < targets.size(); ++c) {
+      char* const first = reinterpret_cast<char*>(line.data() + c * width);
+      const std::ptrdiff_t to_left = std::ptrdiff_t{data.min.x} * static_cast<std::ptrdiff_t>(sizeof(float));
+      buffer.insert(targets[c].name, Imf::Slice(Imf::FLOAT, first - to_left, sizeof(float), 0));
     }
-    file_->input->setFrameBuffer(buffer);
-    const auto offset = [step](int pixels) { return static_cast<std::size_t>(pixels) * step; };
+    input.setFrameBuffer(buffer);
     for (int y = both.min.y; y <= both.max.y; ++y) {
-      file_->input->readPixels(y);
-      const float* const from = line.data() + offset(both.min.x - data.min.x);
-      const std::size_t row = static_cast<std::size_t>(y - picture.min.y) * static_cast<std::size_t>(width_px);
-      std::copy(from, from + offset(both.max.x - both.min.x + 1),
-                values.data() + row * step + offset(both.min.x - picture.min.x));
+      input.readPixels(y);
+      const std::size_t first_pixel =
+          static_cast<std::size_t>(y - window.min.y) * static_cast<std::size_t>(width_of(window)) +
+          static_cast<std::size_t>(both.min.x - window.min.x);
+      for (std::size_t c = 0; c < targets.size(); ++c) {
+        const float* from = line.data() + c * width + (both.min.x - data.min.x);
+        float* to = targets[c].first + first_pixel * targets[c].step;
+        for (int x = both.min.x; x <= both.max.x; ++x, to += targets[c].step) {
+          *to = *from++;
+        }
+      }
     }
   } catch (const std::bad_alloc&) {
     throw;

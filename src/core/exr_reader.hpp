@@ -20,35 +20,57 @@ namespace gazetrace {
 // is lossless, and up to 2700 where it is dwaa or dwab. A crop may be of any size within its picture.
 void check_exr_windows(const Imf::Header& header, std::uint64_t bytes, const std::string& place);
 
+// A channel of a part.
+struct ExrChannel {
+  int part = 0;
+  std::string name;
+};
+
+// Where a channel's values go: the one of pixel (x, y) of a window to first[(y * width + x) * step].
+struct ExrTarget {
+  std::string name;
+  float* first = nullptr;
+  std::size_t step = 1;
+};
+
 class ExrReader final : public PictureReader {
  public:
   // The header, which check_exr_header() has passed. `place` is that of errors.
   ExrReader(const PictureSource& source, const std::string& place);
   ~ExrReader() override;
 
-  std::vector<std::string> names;  // of all channels
-
   // Finds the channels that are light, and counts them as `channels`: R, G and B, or r, g and b, without a layer's
-  // name, else Y or R where it is alone, which is gray (X and Y are no color), else those of the only layer that has
-  // them or of the one that is called Combined, beauty or rgba; behind them A, where there is one. Error(input) where
-  // there are none: of depth alone, say.
+  // name, else Y or R where it is alone in a file of one part, which is gray (X and Y are no color), else those of the
+  // only layer that has them or of the one that is called Combined, beauty or rgba; behind them A, where there is one.
+  // A part is a layer, and its name counts as one. Error(input) where there are none: of depth alone, say.
   void choose_light();
+  // Makes a channel of one of these names the picture; where there is but one channel, that one.
+  void choose_channel(const std::vector<std::string>& wanted);
 
   std::string read(int count, std::span<std::uint8_t> values) override;  // never: EXRs are deep
-  std::string read(int count, std::span<float> values) override;         // of the channels that are light
-  // The channels of these names. Error(input) for those that have no value of their own for each pixel.
-  std::string read(std::span<const std::string> wanted, std::span<float> values);
+  std::string read(int count, std::span<float> values) override;         // of the channels that were chosen
+
+  [[nodiscard]] int parts() const;
+  [[nodiscard]] const Imf::Header& header(int part) const;
+  // Those of the window's values for which the part has data. Error(input) for channels that have no value of their own
+  // for each pixel; what is wrong with the file, or nothing.
+  std::string read(int part, const Imath::Box2i& window, std::span<const ExrTarget> targets);
 
  private:
-  [[nodiscard]] bool has(const std::string& name) const;
-  // Of a layer, with its dot: three channels or, with alpha, four; or none.
-  [[nodiscard]] std::vector<std::string> color_of(const std::string& layer) const;
-  [[nodiscard]] std::vector<std::string> layers_of_color() const;
+  struct Light;
+  [[nodiscard]] Light light_of(int part, const std::string& layer) const;
+  [[nodiscard]] std::vector<Light> lights() const;
+  [[nodiscard]] std::vector<Light> gray_of_one_part() const;
+  [[noreturn]] void refuse(const std::vector<Light>& lights) const;
+  void take(int part, std::vector<std::string> chosen);
 
   struct File;
   std::unique_ptr<File> file_;
-  std::vector<std::string> light_;
+  std::vector<ExrChannel> all_;  // of the parts that are not deep
+  int part_ = 0;
+  std::vector<std::string> chosen_;
   std::string place_;
+  std::uint64_t file_bytes_ = 0;
 };
 
 }  // namespace gazetrace

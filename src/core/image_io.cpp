@@ -6,37 +6,35 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <new>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "core/exr_header.hpp"
 #include "core/exr_reader.hpp"
+#include "core/jpeg_file.hpp"
 #include "core/picture_module.hpp"
 #include "core/png_file.hpp"
+#include "core/radiance_file.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
 namespace {
 
-constexpr std::string_view kExr = "openexr";  // read by OpenEXR itself
+// OpenImageIO's names of what is read without it.
+constexpr std::string_view kExr = "openexr";
+constexpr std::string_view kRadiance = "hdr";
 constexpr int kMaxSidePx = 65536;
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 30U;        // 4 GiB of bytes, 16 of floats
 constexpr std::uint64_t kPixelsOfAnyFile = std::uint64_t{1} << 20U;  // whatever its size
-// Environments and pictures to compare: of one colour or nearly, 8192 x 5461 half floats may come from a few bytes.
-constexpr PictureLimits kFloatLimits{200, std::uint64_t{256} << 20U};
-
-std::string reason(const std::string& message) {
-  return message.empty() ? std::string("not a readable picture") : message;
-}
-
 // A picture that is being read, together with the bytes that it is read from.
 struct OpenPicture {
   std::vector<std::uint8_t> bytes;
-  std::unique_ptr<PictureReader> reader;
-  std::string problem;  // why there is no reader
+  std::unique_ptr<PictureReader> reader;  // never empty
   std::uint64_t file_size = 0;
 };
 
@@ -49,21 +47,23 @@ std::uint64_t most_pixels_a_byte(std::string_view format) {
 }
 
 // Called before any memory is allocated, since the size is only the claim of a header of a few bytes.
-PictureReader& check_size(const OpenPicture& picture, const std::string& place, const PictureLimits& limits = {}) {
-  PictureReader& reader = *picture.reader;
-  const std::string size = std::to_string(reader.width_px) + " x " + std::to_string(reader.height_px);
-  if (reader.width_px < 1 || reader.height_px < 1 || reader.channels < 1 || reader.width_px > kMaxSidePx ||
-      reader.height_px > kMaxSidePx || reader.depth > 1) {
+void check_size(const OpenPicture& picture, const std::string& place, const PictureLimits& limits) {
+  const PictureReader& reader = *picture.reader;
+  const PictureFacts& facts = reader.facts;
+  const std::string size = std::to_string(facts.width_px) + " x " + std::to_string(facts.height_px);
+  if (facts.width_px < 1 || facts.height_px < 1 || reader.channels < 1 || facts.width_px > kMaxSidePx ||
+      facts.height_px > kMaxSidePx || reader.depth > 1) {
     throw Error(ErrorKind::input, place,
                 "a picture of " + size + " pixels and " + std::to_string(reader.channels) + " channels cannot be used");
   }
-  const std::uint64_t pixels =
-      static_cast<std::uint64_t>(reader.width_px) * static_cast<std::uint64_t>(reader.height_px);
-  if (pixels > kMaxPixels) {
-    throw Error(
-        ErrorKind::input, place,
-        "a picture of " + size + " pixels is too large; at most " + std::to_string(kMaxPixels) + " are possible",
-        "make it smaller");
+  const std::uint64_t pixels = static_cast<std::uint64_t>(facts.width_px) * static_cast<std::uint64_t>(facts.height_px);
+  const bool is_for_memory = limits.most_pixels > 0 && limits.most_pixels < kMaxPixels;
+  const std::uint64_t most = is_for_memory ? limits.most_pixels : kMaxPixels;
+  if (pixels > most) {
+    throw Error(ErrorKind::input, place,
+                "a picture of " + size + " pixels is too large; at most " + std::to_string(most) + " are possible" +
+                    (is_for_memory ? " in the limit of memory" : ""),
+                is_for_memory ? "make it smaller, or raise `max-memory`" : "make it smaller");
   }
   const std::uint64_t a_byte = most_pixels_a_byte(reader.format);
   if (a_byte > 0 && pixels > kPixelsOfAnyFile + a_byte * picture.file_size) {
@@ -83,14 +83,19 @@ PictureReader& check_size(const OpenPicture& picture, const std::string& place, 
                     std::to_string(static_cast<std::uint64_t>(limits.expansion)) + " times the file",
                 limits.by_memory ? "make the picture smaller, or raise `max-memory`" : "make it smaller");
   }
-  return reader;
 }
 
-[[noreturn]] void fail_for_memory(const PictureReader& reader, const std::string& place) {
-  throw Error(ErrorKind::runtime, place,
-              "there is no memory for a picture of " + std::to_string(reader.width_px) + " x " +
-                  std::to_string(reader.height_px) + " pixels",
-              "make it smaller");
+// What `read` makes of a picture.
+template <class Read>
+auto with_memory(const PictureFacts& facts, const std::string& place, const Read& read) {
+  try {
+    return read();
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorKind::runtime, place,
+                "there is no memory for a picture of " + std::to_string(facts.width_px) + " x " +
+                    std::to_string(facts.height_px) + " pixels",
+                "make it smaller");
+  }
 }
 
 // Makes RGBA from `channels` (1 to 4) channels per pixel; where there are 4 already, the buffer itself is returned.
@@ -130,41 +135,67 @@ void check_read(const std::string& problem, const std::string& place) {
   }
 }
 
-template <class T>
-std::vector<T> read_channels(PictureReader& reader, int channels, T opaque, const std::string& place) {
-  const auto count = static_cast<std::size_t>(reader.width_px) * static_cast<std::size_t>(reader.height_px);
-  try {
-    std::vector<T> pixels(count * static_cast<std::size_t>(channels));
-    check_read(reader.read(channels, pixels), place);
-    return to_rgba(std::move(pixels), count, channels, opaque);
-  } catch (const std::bad_alloc&) {
-    fail_for_memory(reader, place);
-  }
+std::size_t pixels_of(const PictureFacts& facts) {
+  return static_cast<std::size_t>(facts.width_px) * static_cast<std::size_t>(facts.height_px);
 }
 
-ImageRgba read_rgba(const OpenPicture& picture, const std::string& place, const PictureLimits& limits) {
-  PictureReader& reader = check_size(picture, place, limits);
-  ImageRgba image;
-  image.width_px = reader.width_px;
-  image.height_px = reader.height_px;
-  const int channels = std::min(reader.channels, 4);
-  if (!reader.is_deep) {
-    image.bytes = read_channels<std::uint8_t>(reader, channels, 255, place);
-    image.has_alpha = channels % 2 == 0 && any_transparent<std::uint8_t>(image.bytes, 255);
-    return image;
-  }
-  image.is_linear = reader.is_linear;
-  image.floats = read_channels<float>(reader, channels, 1, place);
+template <class T>
+std::vector<T> read_channels(PictureReader& reader, int channels, const std::string& place) {
+  std::vector<T> pixels(pixels_of(reader.facts) * static_cast<std::size_t>(channels));
+  check_read(reader.read(channels, pixels), place);
+  return pixels;
+}
+
+void check_finite(const ImageRgba& image, const std::string& place) {
   for (std::size_t i = 0; i < image.floats.size(); ++i) {
     if (!std::isfinite(image.floats[i])) {
       const std::size_t pixel = i / 4;
-      const auto width = static_cast<std::size_t>(reader.width_px);
+      const auto width = static_cast<std::size_t>(image.width_px);
       throw Error(ErrorKind::input, place,
                   "pixel " + std::to_string(pixel % width) + ", " + std::to_string(pixel / width) + " is not finite",
                   "repair the picture");
     }
   }
-  image.has_alpha = channels % 2 == 0 && any_transparent(image.floats, 1.0F);
+}
+
+// Colors that were multiplied by alpha become what they were; where alpha is 0 nothing is known of them.
+template <class T>
+void divide_by_alpha(std::vector<T>& rgba, T opaque) {
+  constexpr bool is_code = std::is_integral_v<T>;
+  constexpr auto kMost = static_cast<float>(std::numeric_limits<T>::max());
+  for (std::size_t i = 0; i < rgba.size(); i += 4) {
+    const T alpha = rgba[i + 3];
+    if (!(alpha > 0 && alpha < opaque)) {
+      continue;
+    }
+    for (std::size_t c = i; c < i + 3; ++c) {
+      const float color = static_cast<float>(rgba[c]) * static_cast<float>(opaque) / static_cast<float>(alpha);
+      rgba[c] = static_cast<T>(std::min(is_code ? color + 0.5F : color, kMost));
+    }
+  }
+}
+
+ImageRgba read_rgba(PictureReader& reader, const std::string& place) {
+  const PictureFacts& facts = reader.facts;
+  ImageRgba image;
+  image.width_px = facts.width_px;
+  image.height_px = facts.height_px;
+  image.is_linear = facts.is_linear;
+  image.primaries = facts.primaries;
+  const int channels = std::min(reader.channels, 4);
+  const auto take = [&]<class T>(std::vector<T>& pixels, T opaque) {
+    pixels = to_rgba(read_channels<T>(reader, channels, place), pixels_of(facts), channels, opaque);
+    image.has_alpha = channels % 2 == 0 && any_transparent(pixels, opaque);
+    if (image.has_alpha && facts.alpha == Alpha::premultiplied) {
+      divide_by_alpha(pixels, opaque);
+    }
+  };
+  if (facts.is_deep) {
+    take(image.floats, 1.0F);
+    check_finite(image, place);
+  } else {
+    take(image.bytes, std::uint8_t{255});
+  }
   return image;
 }
 
@@ -179,7 +210,7 @@ const char* format_by_content(std::span<const std::uint8_t> bytes) {
   };
   constexpr std::array<Magic, 13> kMagics{{{"\x89PNG\r\n\x1a\n"sv, "png"},
                                            {"\xff\xd8\xff"sv, "jpeg"},
-                                           {"#?R"sv, "hdr"},
+                                           {"#?R"sv, kRadiance.data()},
                                            {"\x76\x2f\x31\x01"sv, kExr.data()},
                                            {"RIFF"sv, "webp"},
                                            {"II*\0"sv, "tiff"},
@@ -196,30 +227,6 @@ const char* format_by_content(std::span<const std::uint8_t> bytes) {
     }
   }
   return nullptr;
-}
-
-constexpr const char* kNoKnownKind = "it is no picture of a known kind (PNG, JPEG, WebP, TIFF, DPX, EXR, HDR, ...)";
-
-// Textures are read with their alpha beside the color, many at once.
-enum class Use { picture, texture };
-
-// `picture.reader` is empty, and `problem` says why, where it cannot be opened. `bytes` must be the picture's own, or
-// outlive it; where they are empty, the file is read.
-void open_as(OpenPicture& picture, const char* format, const std::string& path, std::span<const std::uint8_t> bytes,
-             Use use, const std::string& place) {
-  const PictureSource source{format, path, bytes, use == Use::texture, use == Use::texture};
-  if (format != kExr) {
-    picture.reader = picture_module().open(source, picture.problem);
-    return;
-  }
-  auto reader = std::make_unique<ExrReader>(source, place);
-  reader->choose_light();
-  picture.reader = std::move(reader);
-}
-
-void open_png(OpenPicture& picture, std::span<const std::uint8_t> file_bytes, Use use, const std::string& place) {
-  picture.bytes = essential_png(file_bytes, place);
-  open_as(picture, "png", {}, picture.bytes, use, place);
 }
 
 // Of a PNG all bytes are read, so that its size is held against that of its pixels before: those of the largest depth,
@@ -245,138 +252,195 @@ void check_size_of_png(std::span<const std::uint8_t> head, std::uint64_t file_si
   }
 }
 
-// Error(input) where the file begins as PNG does but is broken.
-OpenPicture open_file(const std::string& path, Use use, const std::string& place) {
-  OpenPicture picture;
-  std::error_code ignored;
-  picture.file_size = std::filesystem::file_size(path, ignored);
-  std::ifstream stream(path, std::ios::binary);
-  std::vector<std::uint8_t> bytes(24);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+std::string place_of(const PictureInput& input, const std::string& place) {
+  return input.path.empty() || input.path == place ? place : place + " ('" + input.path + "')";
+}
+
+std::vector<std::uint8_t> bytes_of_file(std::ifstream& stream, std::uint64_t size) {
+  std::vector<std::uint8_t> bytes(size);
+  stream.clear();  // a file may end within its head
+  stream.seekg(0);
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
   bytes.resize(static_cast<std::size_t>(stream.gcount()));
-  const char* const format = format_by_content(bytes);
-  if (format == nullptr) {
-    picture.problem = kNoKnownKind;
-    return picture;
+  return bytes;
+}
+
+// Opens a picture by the kind that its content says, with the bytes that concern it. Error(input) for what is no
+// picture.
+OpenPicture open_bytes(const char* format, PictureInput input, std::vector<std::uint8_t> own, bool on_one_thread,
+                       const std::string& place) {
+  OpenPicture picture;
+  picture.bytes = std::move(own);
+  if (!picture.bytes.empty()) {
+    input.bytes = picture.bytes;
   }
-  check_exr_header(path, place);
-  if (is_png(bytes)) {
-    check_size_of_png(bytes, picture.file_size, place);
-    const std::size_t got = bytes.size();
-    bytes.resize(std::max<std::uint64_t>(picture.file_size, got));
-    stream.clear();  // a file may end within its head
-    if (got == bytes.size() ||
-        stream.read(reinterpret_cast<char*>(bytes.data() + got), static_cast<std::streamsize>(bytes.size() - got))) {
-      open_png(picture, bytes, use, place);
-    }
+  const std::string_view kind = format;
+  if (kind == "png" || kind == "jpeg") {
+    picture.bytes = kind == "png" ? essential_png(input.bytes, place) : essential_jpeg(input.bytes, place);
+    input.bytes = picture.bytes;
+  }
+  const PictureSource source{format, input.path, input.bytes, on_one_thread};
+  if (kind == kRadiance) {
+    picture.reader = open_radiance(input.bytes, place);
+  } else if (kind == kExr) {
+    auto reader = std::make_unique<ExrReader>(source, place);
+    reader->choose_light();
+    picture.reader = std::move(reader);
   } else {
-    open_as(picture, format, path, {}, use, place);
+    std::string problem;
+    picture.reader = picture_module().open(source, problem);
+    if (!picture.reader) {
+      throw Error(ErrorKind::input, place,
+                  "cannot be read: " + (problem.empty() ? std::string("not a readable picture") : problem));
+    }
+  }
+  std::optional<Primaries>& primaries = picture.reader->facts.primaries;
+  if (primaries == Primaries{}) {  // as some programs write that nothing is known
+    primaries.reset();
+  }
+  if (primaries && !is_space(*primaries)) {
+    throw Error(ErrorKind::input, place, "the primaries that its header states span no colors", "export it again");
   }
   return picture;
 }
 
-std::string place_of(const std::string& path, const std::string& place) {
-  return place + " ('" + path + "')";
+// The kinds whose bytes are looked at, or read, before a library sees them.
+bool is_read_whole(std::string_view format) {
+  return format == "png" || format == "jpeg" || format == "webp" || format == kRadiance;
 }
 
-OpenPicture open_picture(const std::string& path, const std::string& place) {
+void check_is_there(const std::string& path, const std::string& place) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) {
-    throw Error(ErrorKind::input, place, "the picture '" + path + "' does not exist", "put it there or fix the uri");
+    throw place == path
+        ? Error(ErrorKind::input, place, "there is no such file")
+        : Error(ErrorKind::input, place, "the picture '" + path + "' does not exist", "put it there or fix the uri");
   }
-  OpenPicture picture = open_file(path, Use::texture, place_of(path, place));
-  if (!picture.reader) {
-    throw Error(ErrorKind::input, place, "cannot read the picture '" + path + "': " + reason(picture.problem));
-  }
-  return picture;
 }
 
-OpenPicture open_picture(std::span<const std::uint8_t> file_bytes, const std::string& place) {
-  const char* const format = format_by_content(file_bytes);
+OpenPicture open_picture(const PictureInput& input, const std::string& place, bool on_one_thread) {
+  const bool is_file = !input.path.empty();
+  if (is_file) {
+    check_is_there(input.path, place);
+  }
+  std::error_code ignored;
+  const std::string where = place_of(input, place);
+  const std::uint64_t size = is_file ? std::filesystem::file_size(input.path, ignored) : input.bytes.size();
+  std::ifstream stream;
+  if (is_file) {
+    stream.open(input.path, std::ios::binary);
+  }
+  constexpr std::size_t kHead = 24;
+  const std::vector<std::uint8_t> head = is_file ? bytes_of_file(stream, kHead) : std::vector<std::uint8_t>();
+  const char* const format = format_by_content(is_file ? head : input.bytes);
   if (format == nullptr) {
-    throw Error(ErrorKind::input, place, "the bytes are no picture of a known kind", "use PNG or JPEG");
+    throw Error(ErrorKind::input, where,
+                "cannot be read: it is no picture of a known kind (PNG, JPEG, WebP, TIFF, DPX, EXR, HDR, ...)");
   }
-  check_exr_header(file_bytes, place);
-  OpenPicture picture;
-  picture.file_size = file_bytes.size();
-  if (is_png(file_bytes)) {
-    open_png(picture, file_bytes, Use::texture, place);
+  if (is_file) {
+    check_exr_header(input.path, where);
   } else {
-    open_as(picture, format, {}, file_bytes, Use::texture, place);
+    check_exr_header(input.bytes, where);
   }
-  if (!picture.reader) {
-    throw Error(ErrorKind::input, place, "cannot read the picture: " + reason(picture.problem));
+  constexpr std::uint64_t kMostFileBytes = std::uint64_t{4} << 30U;
+  if (is_png(head)) {
+    check_size_of_png(head, size, where);
+  } else if (is_file && is_read_whole(format) && size > kMostFileBytes) {
+    throw Error(ErrorKind::input, where,
+                "a file of " + std::to_string(size >> 30U) + " GiB is no " + format + " picture", "export it again");
+  }
+  OpenPicture picture = open_bytes(
+      format, input, is_file && is_read_whole(format) ? bytes_of_file(stream, size) : std::vector<std::uint8_t>(),
+      on_one_thread, where);
+  picture.file_size = size;
+  return picture;
+}
+
+// A picture whose size is no more than it may be. Of a PNG all pixels are unpacked once: what is damaged in them would
+// be printed by the library that reads them, and data beyond them unpacked to the end.
+OpenPicture open_to_read(const PictureInput& input, const std::string& place, const PictureLimits& limits,
+                         bool on_one_thread) {
+  OpenPicture picture = open_picture(input, place, on_one_thread);
+  const std::string where = place_of(input, place);
+  check_size(picture, where, limits);
+  if (is_png(picture.bytes)) {
+    check_png_pixels(picture.bytes, where);
   }
   return picture;
 }
 
-// After the checks of its size, since it unpacks all pixels once: what is damaged in them would be printed by the
-// library that reads them, and data beyond them unpacked to the end.
-void check_pixels_of_png(const OpenPicture& picture, const std::string& place, const PictureLimits& limits) {
-  check_size(picture, place, limits);
-  if (is_png(picture.bytes)) {
-    check_png_pixels(picture.bytes, place);
+ImageRgb read_rgb(PictureReader& reader, const std::string& place) {
+  const PictureFacts& facts = reader.facts;
+  ImageRgb image(facts.width_px, facts.height_px);
+  if (reader.channels >= 3) {
+    static_assert(sizeof(Vec3f) == 3 * sizeof(float));
+    check_read(reader.read(3, std::span(&image.pixels.front().x, 3 * image.pixels.size())), place);
+  } else {
+    const std::vector<float> gray = read_channels<float>(reader, 1, place);
+    std::transform(gray.begin(), gray.end(), image.pixels.begin(), [](float v) { return Vec3f{v, v, v}; });
   }
+  return image;
 }
 
-PictureSize size_of(const OpenPicture& picture, const std::string& place, const PictureLimits& limits) {
-  const PictureReader& reader = check_size(picture, place, limits);
-  return {reader.width_px, reader.height_px, reader.is_deep, 1};
+// Turned as Exif's orientation asks: 5 to 8 exchange rows and columns; then mirrored in x, in y or both.
+ImageRgb upright(ImageRgb image, int orientation) {
+  if (orientation <= 1 || orientation > 8) {
+    return image;
+  }
+  const bool is_turned = orientation >= 5;
+  const bool from_right = orientation == 2 || orientation == 3 || orientation == 6 || orientation == 7;
+  const bool from_bottom = orientation == 3 || orientation == 4 || orientation == 7 || orientation == 8;
+  ImageRgb out(is_turned ? image.height_px : image.width_px, is_turned ? image.width_px : image.height_px);
+  for (int y = 0; y < out.height_px; ++y) {
+    for (int x = 0; x < out.width_px; ++x) {
+      const int i = from_right ? out.width_px - 1 - x : x;
+      const int j = from_bottom ? out.height_px - 1 - y : y;
+      out(x, y) = is_turned ? image(j, i) : image(i, j);
+    }
+  }
+  return out;
 }
 
 }  // namespace
 
-ImageRgb read_rgb(PictureReader& reader, const std::string& place) {
-  const int channels = reader.channels >= 3 ? 3 : 1;
-  try {
-    ImageRgb image(reader.width_px, reader.height_px);
-    const std::size_t count = image.pixels.size();
-    std::vector<float> values(count * static_cast<std::size_t>(channels));
-    check_read(reader.read(channels, values), place);
-    for (std::size_t i = 0; i < count; ++i) {
-      image.pixels[i] = channels == 3 ? Vec3f{values[3 * i], values[3 * i + 1], values[3 * i + 2]}
-                                      : Vec3f{values[i], values[i], values[i]};
+ImageRgba read_image_rgba(const PictureInput& input, const std::string& place, const PictureLimits& limits) {
+  const OpenPicture picture = open_to_read(input, place, limits, true);
+  return with_memory(picture.reader->facts, place, [&] { return read_rgba(*picture.reader, place_of(input, place)); });
+}
+
+PictureSize read_picture_size(const PictureInput& input, const std::string& place, const PictureLimits& limits) {
+  const OpenPicture picture = open_picture(input, place, true);
+  check_size(picture, place_of(input, place), limits);
+  const PictureFacts& facts = picture.reader->facts;
+  return {facts.width_px, facts.height_px, facts.is_deep, 1};
+}
+
+Picture read_picture(const std::string& path, const PictureLimits& limits) {
+  const OpenPicture open = open_to_read(path, path, limits, false);
+  Picture picture{open.reader->facts, {}};
+  picture.rgb = with_memory(picture.facts, path,
+                            [&] { return upright(read_rgb(*open.reader, path), picture.facts.orientation); });
+  picture.facts.width_px = picture.rgb.width_px;
+  picture.facts.height_px = picture.rgb.height_px;
+  const std::optional<RgbMatrix> to_rec709 = matrix_to_rec709(picture.facts.primaries.value_or(kRec709));
+  if (picture.facts.is_linear && to_rec709) {
+    for (Vec3f& pixel : picture.rgb.pixels) {
+      pixel = transformed(*to_rec709, pixel);
     }
+  }
+  return picture;
+}
+
+ImageGray read_picture_channel(const std::string& path, const std::vector<std::string>& names) {
+  check_is_there(path, path);
+  check_exr_header(path, path);
+  ExrReader reader({kExr.data(), path, {}, false}, path);
+  reader.choose_channel(names);
+  return with_memory(reader.facts, path, [&] {
+    ImageGray image(reader.facts.width_px, reader.facts.height_px);
+    check_read(reader.read(1, image.pixels), path);
     return image;
-  } catch (const std::bad_alloc&) {
-    fail_for_memory(reader, place);
-  }
-}
-
-ImageRgba read_image_rgba(const std::string& path, const std::string& place, const PictureLimits& limits) {
-  const std::string full_place = place_of(path, place);
-  const OpenPicture picture = open_picture(path, place);
-  check_pixels_of_png(picture, full_place, limits);
-  return read_rgba(picture, full_place, limits);
-}
-
-ImageRgba read_image_rgba(std::span<const std::uint8_t> file_bytes, const std::string& place,
-                          const PictureLimits& limits) {
-  const OpenPicture picture = open_picture(file_bytes, place);
-  check_pixels_of_png(picture, place, limits);
-  return read_rgba(picture, place, limits);
-}
-
-PictureSize read_picture_size(const std::string& path, const std::string& place, const PictureLimits& limits) {
-  return size_of(open_picture(path, place), place_of(path, place), limits);
-}
-
-PictureSize read_picture_size(std::span<const std::uint8_t> file_bytes, const std::string& place,
-                              const PictureLimits& limits) {
-  return size_of(open_picture(file_bytes, place), place, limits);
-}
-
-ImageRgb read_image_rgb_float(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) {
-    throw Error(ErrorKind::input, path, "there is no such file");
-  }
-  const OpenPicture picture = open_file(path, Use::picture, path);
-  if (!picture.reader) {
-    throw Error(ErrorKind::input, path, "cannot be read: " + reason(picture.problem));
-  }
-  check_pixels_of_png(picture, path, kFloatLimits);
-  return read_rgb(*picture.reader, path);
+  });
 }
 
 std::vector<std::uint8_t> encode_image(const std::string& path, int width_px, int height_px, int bits,
@@ -394,8 +458,7 @@ std::string read_image_note(const std::string& path) {
     return *note;
   }
   try {
-    const OpenPicture picture = open_file(path, Use::picture, path);
-    return picture.reader ? picture.reader->note : std::string();
+    return open_picture(path, path, false).reader->note;
   } catch (const Error&) {
     return {};
   }

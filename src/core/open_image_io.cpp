@@ -3,22 +3,68 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <cstring>
+#include <memory>
+#include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/picture_module.hpp"
 
 namespace gazetrace {
 namespace {
 
+// The WebP with its alpha taken off; empty where it is not one picture. Container: RIFF; the chunk "VP8 " has no alpha
+// of its own, and "VP8L" states in its fifth byte whether it does (RFC 9649, sections 2 and 3.4).
+std::vector<std::uint8_t> opaque_webp(std::span<const std::uint8_t> bytes) {
+  constexpr std::size_t kHeader = 12;
+  constexpr std::uint8_t kHasAlpha = 0x10;
+  const auto number = [&](std::size_t at) {
+    return std::size_t{bytes[at]} | std::size_t{bytes[at + 1]} << 8U | std::size_t{bytes[at + 2]} << 16U |
+           std::size_t{bytes[at + 3]} << 24U;
+  };
+  for (std::size_t at = kHeader; at + 8 <= bytes.size();) {
+    const std::string_view name(reinterpret_cast<const char*>(&bytes[at]), 4);
+    const std::size_t size = number(at + 4);
+    const std::size_t whole = 8 + size + size % 2;
+    if (size > bytes.size() - at - 8) {
+      return {};
+    }
+    if (name == "VP8 " || name == "VP8L") {
+      const std::size_t there = std::min(whole, bytes.size() - at);
+      std::vector<std::uint8_t> copy(bytes.begin(), bytes.begin() + kHeader);
+      copy.insert(copy.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                  bytes.begin() + static_cast<std::ptrdiff_t>(at + there));
+      copy.resize(kHeader + whole);
+      for (std::size_t i = 0; i < 4; ++i) {
+        copy[4 + i] = static_cast<std::uint8_t>((whole + 4) >> 8 * i);
+      }
+      if (name == "VP8L" && size > 4) {
+        copy[kHeader + 8 + 4] &= static_cast<std::uint8_t>(~kHasAlpha);
+      }
+      return copy;
+    }
+    at += whole;
+  }
+  return {};
+}
+
 class OpenImageIoReader final : public PictureReader {
  public:
   // What is wrong, or nothing.
   std::string open(const PictureSource& source) {
     OIIO::ImageSpec config;
-    if (source.keep_alpha) {
-      // OpenImageIO multiplies PNG colour by alpha unless told otherwise, which would lose the colour where alpha is 0.
-      config.attribute("oiio:UnassociatedAlpha", 1);
+    // OpenImageIO multiplies straight colour by alpha unless told otherwise, which would lose the colour where alpha is
+    // 0.
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    constexpr std::size_t kFlagsAt = 20;  // of the chunk VP8X, which is the first
+    constexpr std::uint8_t kAnimated = 0x02;
+    const std::string_view head(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
+    if (source.format == std::string_view("webp") && source.bytes.size() > kFlagsAt && head.substr(12, 4) == "VP8X" &&
+        (source.bytes[kFlagsAt] & kAnimated) != 0) {
+      return "an animated WebP is several pictures";
     }
     input_ = OIIO::ImageInput::create(source.format);
     if (!input_) {
@@ -42,7 +88,7 @@ class OpenImageIoReader final : public PictureReader {
       input_->threads(1);
     }
     take(spec);
-    return {};
+    return format == "webp" && facts.alpha != Alpha::none ? open_color(source) : std::string();
   }
 
   std::string read(int count, std::span<std::uint8_t> values) override {
@@ -55,12 +101,18 @@ class OpenImageIoReader final : public PictureReader {
  private:
   void take(const OIIO::ImageSpec& spec) {
     format = input_->format_name();
-    width_px = spec.width;
-    height_px = spec.height;
     depth = spec.depth;
     channels = spec.nchannels;
-    is_deep = spec.format.size() > 1;
-    is_linear = spec.format.is_floating_point();
+    facts.width_px = spec.width;
+    facts.height_px = spec.height;
+    facts.is_deep = spec.format.size() > 1;
+    facts.is_linear = spec.format.is_floating_point();
+    facts.is_half = spec.format == OIIO::TypeDesc::HALF;
+    facts.is_cube_map = spec.get_string_attribute("textureformat").find("CubeFace") != std::string::npos;
+    facts.orientation = spec.get_int_attribute("Orientation", 1);
+    // TIFF's alone can be either; of the others it is straight, whatever their readers say.
+    const bool is_straight = format != "tiff" || spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0;
+    facts.alpha = spec.alpha_channel < 0 ? Alpha::none : is_straight ? Alpha::straight : Alpha::premultiplied;
     decoded_bytes = spec.image_bytes();
     // DPX keeps the whole text in the document name only; other formats have no name, or the same text in both.
     note = spec.get_string_attribute("DocumentName");
@@ -69,8 +121,30 @@ class OpenImageIoReader final : public PictureReader {
     }
   }
 
+  // A WebP is multiplied by its alpha whatever is asked for, so that its colour is read of a copy that has no alpha.
+  std::string open_color(const PictureSource& source) {
+    opaque_ = opaque_webp(source.bytes);
+    if (opaque_.empty()) {
+      return "the WebP is damaged";
+    }
+    color_ = std::make_unique<OpenImageIoReader>();
+    return color_->open({source.format, {}, opaque_, source.on_one_thread});
+  }
+
   std::string read(int count, OIIO::TypeDesc type, void* values) {
-    if (input_->read_image(0, 0, 0, count, type, values)) {
+    if (color_ == nullptr) {
+      return read(0, count, type, values, OIIO::AutoStride);
+    }
+    const auto step = static_cast<OIIO::stride_t>(type.size()) * count;
+    const int colors = std::min(count, color_->channels);
+    if (const std::string problem = color_->read(0, colors, type, values, step); !problem.empty() || count == colors) {
+      return problem;
+    }
+    return read(colors, count, type, static_cast<char*>(values) + colors * static_cast<int>(type.size()), step);
+  }
+
+  std::string read(int first, int end, OIIO::TypeDesc type, void* values, OIIO::stride_t step) {
+    if (input_->read_image(0, 0, first, end, type, values, step)) {
       return {};
     }
     const std::string problem = input_->geterror();
@@ -79,6 +153,8 @@ class OpenImageIoReader final : public PictureReader {
 
   std::unique_ptr<OIIO::Filesystem::IOMemReader> memory_;  // outlives what reads it
   std::unique_ptr<OIIO::ImageInput> input_;
+  std::vector<std::uint8_t> opaque_;
+  std::unique_ptr<OpenImageIoReader> color_;  // of `opaque_`; empty: `input_` reads all
 };
 
 std::unique_ptr<PictureReader> open(const PictureSource& source, std::string& problem) {

@@ -20,10 +20,9 @@ class PictureReader {
  public:
   virtual ~PictureReader() = default;
 
+  PictureFacts facts;
   std::string format;  // OpenImageIO's name of it
-  int width_px = 0, height_px = 0, depth = 1, channels = 0;
-  bool is_deep = false;             // more than 8 bits a channel
-  bool is_linear = false;           // floats
+  int depth = 1, channels = 0;
   std::uint64_t decoded_bytes = 0;  // of all pixels, with the file's own channels and depth
   std::string note;
 
@@ -32,15 +31,11 @@ class PictureReader {
   virtual std::string read(int count, std::span<float> values) = 0;
 };
 
-// The first three channels of a picture as floats; grey is repeated. Error(input) at `place` where it is damaged.
-ImageRgb read_rgb(PictureReader& reader, const std::string& place);
-
 // Where a picture is, and how it is to be read. `bytes` outlive the reader.
 struct PictureSource {
   const char* format = nullptr;  // OpenImageIO's name of it
   std::string path;              // where `bytes` are empty
   std::span<const std::uint8_t> bytes;
-  bool keep_alpha = false;     // color is not multiplied by alpha
   bool on_one_thread = false;  // since many pictures are read at once
 };
 

@@ -19,7 +19,8 @@ std::string set_environment(const JobSettings& job, Scene& scene) {
     return "none";
   }
   if (wanted == "auto" && !scene.own_environment.empty() && !scene.environment.present()) {
-    scene.environment = load_environment(scene.own_environment, job.environment_rotation_deg, job.environment_ev);
+    scene.environment =
+        load_environment(scene.own_environment, job.environment_rotation_deg, job.environment_ev, job.max_memory.bytes);
     return scene.own_environment + ", which the scene names (`env` chooses)";
   }
   if (wanted == "auto") {
@@ -47,7 +48,7 @@ std::string set_environment(const JobSettings& job, Scene& scene) {
     scene.environment = constant_environment(to_float(radiance) * gain);
     return wanted;
   }
-  scene.environment = load_environment(wanted, job.environment_rotation_deg, job.environment_ev);
+  scene.environment = load_environment(wanted, job.environment_rotation_deg, job.environment_ev, job.max_memory.bytes);
   return wanted;
 }
 

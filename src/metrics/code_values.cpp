@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "core/srgb.hpp"
 
 namespace gazetrace {
 
@@ -34,7 +35,7 @@ double display_light(DisplayResponse response, double code, double peak_cd_m2) {
   const double v = std::clamp(code, 0.0, 1.0);
   switch (response) {
     case DisplayResponse::srgb:
-      return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+      return light_of_srgb(v);
     case DisplayResponse::gamma22:
       return std::pow(v, 2.2);
     case DisplayResponse::gamma24:

@@ -6,17 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "gazetrace/image.hpp"
-
 namespace gazetrace {
 
 const std::vector<std::string>& exr_compression_names();
 // Whether values may change a little: fine for light, and fatal to numbers that are compared bit by bit.
 bool is_lossy_compression(const std::string& name);
-
-// One channel of a picture: the only one, or the first that there is of `Y`, `samples_per_pixel` (as
-// write_sampling_map_exr() names it) and `R`. Error(input).
-ImageGray read_exr_gray(const std::string& path);
 
 // The value of a string attribute; empty where the file is not an EXR, lacks the attribute, or is truncated.
 std::string read_exr_text(const std::string& path, const std::string& attribute);

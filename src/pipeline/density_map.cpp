@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "core/image_io.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/frame_renderer.hpp"
 #include "gazetrace/output.hpp"
-#include "output/exr.hpp"
 
 namespace gazetrace {
 
@@ -16,7 +16,7 @@ ImageGray read_density_picture(const FoveationSettings& settings, std::int32_t f
     return {};
   }
   const std::string path = frame_file_name(files, frame);
-  ImageGray density = read_exr_gray(path);
+  ImageGray density = read_picture_channel(path, {"Y", "samples_per_pixel", "R"});
   check_density_picture(density, settings, path);
   return density;
 }

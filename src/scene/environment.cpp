@@ -2,8 +2,12 @@
 // Light from far away: a picture, a constant, or the built-in sky.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <utility>
 
 #include "core/image_io.hpp"
+#include "core/srgb.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/scene.hpp"
 
@@ -33,11 +37,79 @@ Vec3d sky_radiance(const Vec3d& direction) {
   return base + kGlow * (glow * t);
 }
 
+// The picture, what is made of it and its file, while the tables are made by which its light is sampled.
+constexpr std::uint64_t kBytesOfAPixel = 32;
+
+void check_layout(const PictureFacts& facts, const std::string& path, Warnings& warnings) {
+  const std::int64_t width = facts.width_px;
+  const std::int64_t height = facts.height_px;
+  constexpr std::int64_t kLeastFacePx = 4;  // smaller pictures are of one light
+  const bool is_large = std::min(width, height) >= kLeastFacePx;
+  if (facts.is_cube_map || (is_large && (width == 6 * height || height == 6 * width))) {
+    throw Error(ErrorKind::input, path, "it is a cube map; an environment is a latitude-longitude map",
+                "convert it, for example by 'oiiotool' or 'cmft'");
+  }
+  if (is_large && std::abs(width - 2 * height) > std::max<std::int64_t>(2, height / 50)) {
+    warnings.push_back(path + ": has " + std::to_string(width) + " x " + std::to_string(height) +
+                       " pixels; it is read as a latitude-longitude map, which is twice as wide as high. Light probes, "
+                       "mirror balls and crosses of cubes are not");
+  }
+}
+
+// Light of code values; infinite halves, which are brighter than a half can be, become the largest half.
+void make_light(Picture& picture, const std::string& path, Warnings& warnings) {
+  constexpr float kLargestHalf = 65504;
+  std::uint64_t infinite = 0;
+  std::uint64_t bad = 0;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < picture.rgb.pixels.size(); ++i) {
+    Vec3f& pixel = picture.rgb.pixels[i];
+    if (!picture.facts.is_linear) {
+      pixel = {light_of_srgb(pixel.x), light_of_srgb(pixel.y), light_of_srgb(pixel.z)};
+    }
+    if (is_finite(pixel)) {
+      continue;
+    }
+    if (picture.facts.is_half) {
+      for (float* const value : {&pixel.x, &pixel.y, &pixel.z}) {
+        *value = *value > kLargestHalf ? kLargestHalf : *value;
+      }
+    }
+    if (is_finite(pixel)) {
+      ++infinite;
+    } else {
+      first = bad++ == 0 ? i : first;
+    }
+  }
+  if (bad > 0) {
+    const auto width = static_cast<std::size_t>(picture.rgb.width_px);
+    throw Error(ErrorKind::input, path,
+                std::to_string(bad) + (bad == 1 ? " pixel is" : " pixels are") + " not finite, the first at " +
+                    std::to_string(first % width) + ", " + std::to_string(first / width),
+                "repair the picture");
+  }
+  if (infinite > 0) {
+    warnings.push_back(path + ": " + std::to_string(infinite) +
+                       " pixels are infinite, brighter than the file's half floats can hold; they are read as 65504, "
+                       "so that a sun there is too dark");
+  }
+  if (!picture.facts.is_linear) {
+    warnings.push_back(path + ": holds display values, which are taken for sRGB; no light in it is brighter than 1");
+  }
+}
+
 }  // namespace
 
-Environment load_environment(const std::string& path, double rotation_deg, double exposure_ev) {
+Environment load_environment(const std::string& path, double rotation_deg, double exposure_ev,
+                             std::uint64_t memory_bytes) {
   Environment environment;
-  environment.radiance = read_image_rgb_float(path);
+  PictureLimits limits = kPictureLimits;
+  limits.most_pixels =
+      std::max<std::uint64_t>(1, (memory_bytes > 0 ? memory_bytes : most_memory_bytes()) / kBytesOfAPixel);
+  Picture picture = read_picture(path, limits);
+  check_layout(picture.facts, path, environment.warnings);
+  make_light(picture, path, environment.warnings);
+  environment.radiance = std::move(picture.rgb);
   environment.rotation_rad = rotation_deg * kRadPerDeg;
   environment.source = path;
   const auto scale = static_cast<float>(std::exp2(exposure_ev));
@@ -45,13 +117,12 @@ Environment load_environment(const std::string& path, double rotation_deg, doubl
   std::size_t negative = 0;
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     Vec3f& pixel = image.pixels[i];
-    const bool is_good = is_finite(pixel);
-    if (!is_good || !is_finite(pixel * scale)) {
+    if (!is_finite(pixel * scale)) {
       const auto width = static_cast<std::size_t>(image.width_px);
-      throw Error(ErrorKind::input, path,
-                  "pixel " + std::to_string(i % width) + ", " + std::to_string(i / width) +
-                      (is_good ? " overflows at this exposure" : " is not finite"),
-                  is_good ? "lower the environment's exposure" : "repair the picture");
+      throw Error(
+          ErrorKind::input, path,
+          "pixel " + std::to_string(i % width) + ", " + std::to_string(i / width) + " overflows at this exposure",
+          "lower the environment's exposure");
     }
     negative += pixel.x < 0 || pixel.y < 0 || pixel.z < 0 ? 1 : 0;
     pixel = Vec3f{std::max(pixel.x, 0.0F), std::max(pixel.y, 0.0F), std::max(pixel.z, 0.0F)} * scale;

@@ -6,10 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "core/half.hpp"
+#include "core/srgb.hpp"
 #include "scene/texel.hpp"
 
 namespace gazetrace {
@@ -22,9 +25,6 @@ using Texel = Vec4f;
 // any visible texel.
 constexpr float kLeastWeight = 1.0F / 65536.0F;
 
-float srgb_to_linear(float encoded) {  // IEC 61966-2-1
-  return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
-}
 float linear_to_srgb(float linear) {
   return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
 }
@@ -40,7 +40,7 @@ struct SrgbTables {
   std::array<std::uint8_t, kEncodeSteps + 1> encode{};
   SrgbTables() {
     for (std::size_t i = 0; i < decode.size(); ++i) {
-      decode[i] = srgb_to_linear(static_cast<float>(i) / 255.0F);
+      decode[i] = light_of_srgb(static_cast<float>(i) / 255.0F);
     }
     for (std::size_t i = 0; i < encode.size(); ++i) {
       const float encoded = linear_to_srgb(static_cast<float>(i) / static_cast<float>(kEncodeSteps));
@@ -184,7 +184,7 @@ struct DeepCodec {
       return {p[0], p[1], p[2], p[3]};
     }
     const float weight = std::max(std::min(p[3], 1.0F), kLeastWeight);
-    const auto light = [&](float v) { return std::max(is_linear ? v : srgb_to_linear(v), 0.0F) * weight; };
+    const auto light = [&](float v) { return std::max(is_linear ? v : light_of_srgb(v), 0.0F) * weight; };
     return {light(p[0]), light(p[1]), light(p[2]), weight};
   }
   void store(const Texel& texel, std::uint8_t* to) const {
@@ -245,6 +245,12 @@ Texture make_texture(ImageRgba&& image, TextureUse use) {
     add_levels(texture, Codec8{image.bytes, use, srgb_tables()});
     texture.levels[0].rgba = std::move(image.bytes);
     return texture;
+  }
+  const std::optional<RgbMatrix> to_rec709 = matrix_to_rec709(image.primaries.value_or(kRec709));
+  for (std::size_t i = 0; to_rec709 && use == TextureUse::color && i < image.floats.size(); i += 4) {
+    float* const v = &image.floats[i];
+    const Vec3f rgb = transformed(*to_rec709, {v[0], v[1], v[2]});
+    std::tie(v[0], v[1], v[2]) = std::tie(rgb.x, rgb.y, rgb.z);
   }
   const DeepCodec codec{image.floats, use, image.is_linear};
   // On level 0, normals keep the length that they have in the picture.

@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
   const int width = argc > 3 ? std::atoi(argv[2]) : 1920;
   const int height = argc > 3 ? std::atoi(argv[3]) : 1080;
   Frame frame;
-  frame.radiance = noisy_frame(argc > 1 ? read_image_rgb_float(argv[1]) : made_picture(), width, height);
+  frame.radiance = noisy_frame(argc > 1 ? read_picture(argv[1]).rgb : made_picture(), width, height);
   const double megapixels = 1e-6 * width * height;
   const std::filesystem::path folder = std::filesystem::temp_directory_path();
   const FrameHeader header;

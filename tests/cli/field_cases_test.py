@@ -54,7 +54,7 @@ class FieldCases(harness.CliTest):
         """One frame of 96 x 54, without a filter; the result of the program, and the picture or None."""
         path = self.folder / "frame.exr"
         path.unlink(missing_ok=True)
-        result = self.run_program("render", scene, "--size", "96x54", "--falloff", "uniform", "--filter", "none", "--threads", "1",
+        result = self.run_program("render", scene, "--size", "96x54", "--sampling", "uniform", "--filter", "none", "--threads", "1",
                                   "--quiet", "--exr-pixels", "float", "--exr-compression", "none", "--overwrite", "-o", path, *options)
         return result, Picture(path) if result.returncode == 0 and path.exists() else None
 
@@ -76,7 +76,8 @@ class FieldCases(harness.CliTest):
         missing = [word for word in words if word.lower() not in result.stderr.lower()]
         return result.returncode == 2 and len(lines) == 1 and not missing, (f"lacks {missing}; " if missing else "") + self.last_line(result)
 
-    def near(self, got, right, tolerance=0.002):
+    @staticmethod
+    def near(got, right, tolerance=0.002):
         """Whether these numbers lie this near to those; the numbers."""
         return (len(got) == len(right) and all(abs(a - b) <= tolerance for a, b in zip(got, right)),
                 " ".join(f"{value:.4f}" for value in got))

@@ -186,16 +186,17 @@ inline bool read_picture(const std::string& path, std::string_view input) {
   limits.expansion = 200;
   limits.free_bytes = std::uint64_t{16} << 20U;
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(input.data());
-  return any_reads(
-      [&] { static_cast<void>(read_image_rgba(path, "images[0]", limits)); },
-      [&] {
-        static_cast<void>(read_image_rgba({bytes, input.size()}, "images[0]", limits));
-      },
-      [&] { static_cast<void>(read_picture_size(path, "images[0]", limits)); },
-      [&] { static_cast<void>(load_environment(path, 30, 1)); },
-      [&] { static_cast<void>(read_compared_picture(path)); }, [&] { static_cast<void>(read_pooling_weights(path)); },
-      [&] { static_cast<void>(read_exr_gray(path)); }, [&] { static_cast<void>(read_exr_rgb(path)); },
-      [&] { static_cast<void>(read_frame_stamp(path)); }, [&] { static_cast<void>(read_image_note(path)); });
+  return any_reads([&] { static_cast<void>(read_image_rgba(path, "images[0]", limits)); },
+                   [&] { static_cast<void>(read_image_rgba(std::span(bytes, input.size()), "images[0]", limits)); },
+                   [&] { static_cast<void>(read_picture_size(path, "images[0]", limits)); },
+                   [&] { static_cast<void>(load_environment(path, 30, 1)); },
+                   [&] { static_cast<void>(read_compared_picture(path)); },
+                   [&] { static_cast<void>(read_pooling_weights(path)); },
+                   [&] {
+                     static_cast<void>(read_picture_channel(path, {"Y", "R"}));
+                   },
+                   [&] { static_cast<void>(read_exr_rgb(path)); }, [&] { static_cast<void>(read_frame_stamp(path)); },
+                   [&] { static_cast<void>(read_image_note(path)); });
 }
 
 inline void read_job(const std::string& path) {

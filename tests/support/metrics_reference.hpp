@@ -25,7 +25,7 @@ inline nlohmann::json read_reference_json(const std::string& name) {
 
 // 8-bit code values as floats.
 inline ImageRgb reference_code(const std::string& path) {
-  return read_image_rgb_float((metrics_reference_folder() / path).string());
+  return read_picture((metrics_reference_folder() / path).string()).rgb;
 }
 
 }  // namespace gazetrace

@@ -152,6 +152,12 @@ void check_comparable(const CompareJob& job, const CompareInputs& inputs, const 
     differ(test_path, fmt::format("has {}x{} pixels, the reference {}x{}", test_width, test_height, width, height),
            "compare pictures of one size");
   }
+  if (reference.first_px != test.first_px) {
+    differ(test_path,
+           fmt::format("shows the picture plane from pixel {}, {} on, the reference from {}, {}", test.first_px[0],
+                       test.first_px[1], reference.first_px[0], reference.first_px[1]),
+           "write both with one display window");
+  }
   if (reference.is_linear != test.is_linear) {
     differ(test_path,
            fmt::format("is {}, the reference {}", test.is_linear ? "linear light" : "a display image",

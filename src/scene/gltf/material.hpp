@@ -47,7 +47,8 @@ class TextureTable {
     std::vector<std::size_t> entries;
   };
   int picture_of_image(int image);
-  ImageRgba decode(const Picture& picture, const std::string& place) const;
+  // `decoded` holds what is written as text, and outlives the input.
+  PictureInput input_of(const Picture& picture, const std::string& place, std::vector<std::uint8_t>& decoded) const;
 
   // Pictures of one colour pack a thousand to one, and small ones may.
   static constexpr double kMostExpansion = 200;

@@ -69,26 +69,24 @@ int TextureTable::picture_of_image(int image) {
   return index;
 }
 
-ImageRgba TextureTable::decode(const Picture& picture, const std::string& place) const {
+PictureInput TextureTable::input_of(const Picture& picture, const std::string& place,
+                                    std::vector<std::uint8_t>& decoded) const {
   if (!picture.path.empty()) {
-    return read_image_rgba(picture.path, place, limits_);
+    return picture.path;
   }
   const GltfImageSource& source = document_.images[static_cast<std::size_t>(picture.image)];
   if (source.buffer_view >= 0) {
-    return read_image_rgba(view_bytes(document_, source.buffer_view, place), place, limits_);
+    return view_bytes(document_, source.buffer_view, place);
   }
-  return read_image_rgba(decode_data_uri(source.uri, place), place, limits_);
+  return decoded = decode_data_uri(source.uri, place);
 }
 
 std::vector<PictureSize> TextureTable::sizes() const {
   std::vector<PictureSize> sizes;
   for (const Picture& picture : pictures_) {
     const std::string place = image_place(document_, picture.image);
-    const GltfImageSource& source = document_.images[static_cast<std::size_t>(picture.image)];
-    sizes.push_back(!picture.path.empty() ? read_picture_size(picture.path, place, limits_)
-                    : source.buffer_view >= 0
-                        ? read_picture_size(view_bytes(document_, source.buffer_view, place), place, limits_)
-                        : read_picture_size(decode_data_uri(source.uri, place), place, limits_));
+    std::vector<std::uint8_t> decoded;
+    sizes.push_back(read_picture_size(input_of(picture, place, decoded), place, limits_));
     sizes.back().uses = picture.entries.size();
   }
   return sizes;
@@ -98,7 +96,9 @@ std::vector<Texture> TextureTable::load(int threads, const std::function<void()>
   std::vector<Texture> textures(entries_.size());
   parallel_for_first_error(pictures_.size(), threads, [&](std::size_t i) {
     const Picture& picture = pictures_[i];
-    ImageRgba image = decode(picture, image_place(document_, picture.image));
+    const std::string place = image_place(document_, picture.image);
+    std::vector<std::uint8_t> decoded;
+    ImageRgba image = read_image_rgba(input_of(picture, place, decoded), place, limits_);
     const GltfImageSource& source = document_.images[static_cast<std::size_t>(picture.image)];
     std::vector<ImageRgba> images(picture.entries.size() - 1,
                                   image);  // with one entry, the usual case, nothing is copied

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/srgb.hpp"
 #include "scene/texel.hpp"
 
 namespace gazetrace {
@@ -12,13 +13,9 @@ namespace {
 
 constexpr int kTexelsAcross = 8;
 
-// IEC 61966-2-1.
 double decode(std::uint8_t byte, bool srgb) {
   const double x = byte / 255.0;
-  if (!srgb) {
-    return x;
-  }
-  return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+  return srgb ? light_of_srgb(x) : x;
 }
 
 int wrap(long long i, int size, TextureWrap mode) {

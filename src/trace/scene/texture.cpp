@@ -5,17 +5,17 @@
 #include <utility>
 
 #include "core/instruction_sets.hpp"
+#include "core/srgb.hpp"
 #include "scene/texel.hpp"
 
 namespace gazetrace {
 namespace {
 
-// IEC 61966-2-1, exact for the 256 codes.
+// Exact for the 256 codes.
 std::array<float, 256> srgb_table() {
   std::array<float, 256> table{};
   for (std::size_t i = 0; i < table.size(); ++i) {
-    const double c = static_cast<double>(i) / 255.0;
-    table[i] = static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+    table[i] = static_cast<float>(light_of_srgb(static_cast<double>(i) / 255.0));
   }
   return table;
 }

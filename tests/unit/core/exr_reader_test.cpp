@@ -11,7 +11,9 @@
 #include <OpenEXR/ImfDeepScanLineOutputFile.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
 
@@ -104,10 +106,11 @@ TEST(ExrReader, ThePictureIsTheDisplayWindow) {
     for (const auto& [display, data] : windows) {
       const std::string path = write_exr((folder / "picture.exr"), display, data, kRgb, compression);
       expect_display_window(read_exr_rgb(path), display, data);
-      expect_display_window(read_image_rgb_float(path), display, data);
+      expect_display_window(read_picture(path).rgb, display, data);
       expect_display_window(load_environment(path).radiance, display, data);
-      EXPECT_EQ(read_exr_gray(write_exr((folder / "gray.exr"), display, data, {"Y"}, compression))(10, 11),
-                read_exr_rgb(path)(10, 11).x);
+      EXPECT_EQ(
+          read_picture_channel(write_exr((folder / "gray.exr"), display, data, {"Y"}, compression), {"Y"})(10, 11),
+          read_exr_rgb(path)(10, 11).x);
       std::ifstream stream(path, std::ios::binary);
       const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
       const ImageRgba texture = read_image_rgba(bytes, "a texture");
@@ -144,7 +147,7 @@ TEST(ExrReader, GrayIsYOrRAlone) {
   const Imath::Box2i window = box(0, 0, 3, 1);
   for (const auto& names : std::vector<std::vector<std::string>>{{"R"}, {"Y"}, {"R", "A"}, {"Y", "Z"}}) {
     const std::string path = write_exr((folder / "gray.exr"), window, window, names);
-    for (const ImageRgb& image : {read_exr_rgb(path), read_image_rgb_float(path)}) {
+    for (const ImageRgb& image : {read_exr_rgb(path), read_picture(path).rgb}) {
       const float value = value_at(0, 2, 1);
       EXPECT_EQ(image(2, 1), (Vec3f{value, value, value})) << names[0];
     }
@@ -199,6 +202,61 @@ std::string refusal(const std::function<void()>& read) {
   }
 }
 
+// One part of several: its name, its channels, and the value of all its pixels.
+struct Part {
+  std::string name;
+  std::vector<std::string> channels;
+  float value = 0;
+};
+
+std::string write_parts(const std::string& path, const std::vector<Part>& parts) {
+  std::vector<Imf::Header> headers;
+  for (const Part& part : parts) {
+    Imf::Header& header = headers.emplace_back(4, 2);
+    header.setName(part.name);
+    header.setType(Imf::SCANLINEIMAGE);
+    for (const std::string& channel : part.channels) {
+      header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+    }
+  }
+  Imf::MultiPartOutputFile file(path.c_str(), headers.data(), static_cast<int>(headers.size()));
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    std::array<float, 8> values{};
+    values.fill(parts[p].value);
+    Imf::FrameBuffer buffer;
+    for (const std::string& channel : parts[p].channels) {
+      buffer.insert(channel,
+                    Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), sizeof(float), 4 * sizeof(float)));
+    }
+    Imf::OutputPart part(file, static_cast<int>(p));
+    part.setFrameBuffer(buffer);
+    part.writePixels(2);
+  }
+  return path;
+}
+
+TEST(ExrReader, OfSeveralPartsTheOneThatIsLightIsTaken) {
+  const TemporaryFolder folder;
+  for (const auto& parts :
+       std::vector<std::vector<Part>>{{{"depth", {"Z"}, 7}, {"rgba", kRgb, 2}},
+                                      {{"depth", {"Y"}, 7}, {"picture", kRgb, 2}},
+                                      {{"normal", kRgb, 7}, {"ViewLayer.Combined", kRgb, 2}},
+                                      {{"normal", kRgb, 7}, {"beauty", {"beauty.R", "beauty.G", "beauty.B"}, 2}},
+                                      {{"albedo", {"albedo.R", "albedo.G", "albedo.B"}, 7}, {"picture", kRgb, 2}}}) {
+    const std::string path = write_parts(folder / "parts.exr", parts);
+    EXPECT_EQ(read_exr_rgb(path)(3, 1), (Vec3f{2, 2, 2})) << parts[1].name;
+    EXPECT_EQ(read_picture(path).facts.part, parts[1].name);
+    EXPECT_EQ(read_image_rgba(path, "a texture").floats[0], 2);
+  }
+  const std::string views = write_parts(folder / "views.exr", {{"left", kRgb, 1}, {"right", kRgb, 2}});
+  EXPECT_THAT(refusal([&] { static_cast<void>(read_exr_rgb(views)); }), HasSubstr("left:B, left:G, left:R, right:B"));
+  EXPECT_THAT(refusal([&] { static_cast<void>(read_exr_rgb(views)); }), HasSubstr("several layers of color"));
+  const std::string depths = write_parts(folder / "depths.exr", {{"depth", {"Y"}, 1}, {"far", {"Z"}, 2}});
+  EXPECT_THAT(refusal([&] { static_cast<void>(load_environment(depths)); }), HasSubstr("none of which are its light"));
+  const std::string maps = write_parts(folder / "maps.exr", {{"map", {"samples_per_pixel"}, 3}, {"x", {"Z"}, 2}});
+  EXPECT_EQ(read_picture_channel(maps, {"Y", "samples_per_pixel"})(1, 1), 3);
+}
+
 void write_deep(const std::string& path, const std::vector<std::string>& channels) {
   Imf::Header header(2, 1);
   header.setType(Imf::DEEPSCANLINE);
@@ -245,7 +303,7 @@ TEST(ExrReader, DeepAndSubsampledFilesAreRefusedByTheirKind) {
     EXPECT_THAT(refusal([&] { static_cast<void>(load_environment(path)); }), HasSubstr(words));
     EXPECT_THAT(refusal([&] { static_cast<void>(read_image_rgba(path, "a texture")); }), HasSubstr(words));
   }
-  EXPECT_THAT(refusal([&] { static_cast<void>(read_exr_gray(deep)); }), HasSubstr("deepscanline"));
+  EXPECT_THAT(refusal([&] { static_cast<void>(read_picture_channel(deep, {"Y"})); }), HasSubstr("deepscanline"));
 }
 
 TEST(ExrReader, WhatIsNoLightIsRefusedByItsChannels) {

@@ -109,6 +109,21 @@ TEST_F(ColorConfig, EntersThroughANamedInput) {
   expect_error(settings, ErrorKind::usage, {"unknown input color space 'ap1'", "did you mean 'ap0'"});
 }
 
+// Of the working space, by whatever way it would enter the config.
+TEST_F(ColorConfig, AViewOfDataShowsThePicturesOwnNumbers) {
+  ColorSettings settings;
+  settings.display = "projector";
+  for (const std::string& roles : {kInterchange, std::string()}) {
+    settings.config = write(config_text(roles));
+    const DisplayImage image = ColorPipeline(settings).apply(ImageRgb(1, 1, {0.8F, 0.2F, 0.4F}), 0, 8, 1);
+    EXPECT_THAT(image.bytes, testing::ElementsAre(204, 51, 102));
+  }
+  settings.input = "ap0";
+  EXPECT_THAT(show(settings), testing::ElementsAre(255, 0, 0));
+  settings.look = "red";
+  expect_error(settings, ErrorKind::usage, {"'raw'", "no look"});
+}
+
 TEST_F(ColorConfig, LooksReplaceThoseOfTheView) {
   ColorSettings settings;
   settings.config = write(config_text(""));

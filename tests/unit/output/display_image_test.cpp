@@ -66,7 +66,7 @@ TEST(DisplayImage, EveryFormatKeepsPixelsAndDigest) {
     write_display_image(path, image, example_header(), settings(row.bits));
     EXPECT_THAT(folder.names(), testing::ElementsAre(row.name));
     EXPECT_EQ(read_settings_digest(path), kDigest) << row.name;
-    const ImageRgb back = read_image_rgb_float(path);
+    const ImageRgb back = read_picture(path).rgb;
     ASSERT_EQ(back.pixels.size(), 64U * 48U) << row.name;
     float worst = 0;
     for (std::size_t i = 0; i < back.pixels.size(); ++i) {

@@ -37,11 +37,8 @@ TEST(Environment, RadianceValuesAndExposure) {
   const Environment environment = load_environment(path, 90, 1);
   ASSERT_EQ(environment.radiance.width_px, 2);
   ASSERT_EQ(environment.radiance.height_px, 1);
-  // OpenImageIO adds half a step to mantissas, as Radiance does: within 1/256 of the value.
-  EXPECT_NEAR(environment.radiance(0, 0).x, 2.0, 0.02);
-  EXPECT_NEAR(environment.radiance(0, 0).y, 1.0, 0.02);
-  EXPECT_NEAR(environment.radiance(0, 0).z, 0.5, 0.02);
-  EXPECT_NEAR(environment.radiance(1, 0).x, 1024.0, 8);
+  EXPECT_EQ(environment.radiance(0, 0), (Vec3f{2, 1, 0.5F}));
+  EXPECT_EQ(environment.radiance(1, 0).x, 1024);
   EXPECT_DOUBLE_EQ(environment.rotation_rad, kPi / 2);
   EXPECT_EQ(environment.source, path);
 }
@@ -69,6 +66,26 @@ TEST(Environment, ExposureThatOverflowsIsRefused) {
   const test::TempFolder folder;
   const std::string path = folder.write("one.hdr", radiance_file(1, {128, 128, 128, 138}));
   EXPECT_THROW(static_cast<void>(load_environment(path, 0, 200)), Error);
+}
+
+TEST(Environment, CubeMapsAreRefusedAndOtherShapesDoubted) {
+  const test::TempFolder folder;
+  const auto size = [&](int width, int height) {
+    return folder.write("flat.hdr", "#?RADIANCE\n\n-Y " + std::to_string(height) + " +X " + std::to_string(width) +
+                                        "\n" + std::string(4 * static_cast<std::size_t>(width) * height, 'x'));
+  };
+  EXPECT_THAT(error_of(size(48, 8)), HasSubstr("cube map"));
+  EXPECT_THAT(error_of(size(8, 48)), HasSubstr("cube map"));
+  EXPECT_THAT(load_environment(size(32, 32)).warnings, testing::ElementsAre(HasSubstr("32 x 32")));
+  EXPECT_THAT(load_environment(size(32, 16)).warnings, testing::IsEmpty());
+}
+
+TEST(Environment, TakesNoMoreMemoryThanItMay) {
+  const test::TempFolder folder;
+  const std::string path = folder.write("black.hdr", "#?RADIANCE\n\n-Y 128 +X 256\n" + std::string(4 * 128 * 256, 'x'));
+  EXPECT_TRUE(load_environment(path, 0, 0, 2U << 20U).present());
+  EXPECT_THAT([&] { static_cast<void>(load_environment(path, 0, 0, 1U << 19U)); },
+              testing::ThrowsMessage<Error>(HasSubstr("max-memory")));
 }
 
 TEST(Environment, ConstantIsOnePixel) {

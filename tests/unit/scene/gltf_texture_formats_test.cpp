@@ -67,6 +67,35 @@ TEST(WebpTexture, IsPreferredToItsFallback) {
   EXPECT_THAT(error_of(folder.write("scene.gltf", builder.text())), HasSubstr("EXT_texture_webp.source: 3 is not"));
 }
 
+// Written by Pillow 13.0: 2 x 1 pixels, 200 100 50 with alpha 128 and 10 220 90 with alpha 0, without loss and with.
+TEST(WebpTexture, KeepsItsColorStraight) {
+  const Bytes lossless{82, 73, 70, 70, 34, 0,   0,  0,   87, 69,  66, 80, 86,  80, 56, 76, 21, 0,   0,   0, 47,
+                       1,  0,  0,  16, 15, 112, 68, 238, 43, 248, 94, 11, 123, 0,  35, 28, 25, 209, 255, 0, 0};
+  const ImageRgba exact = read_image_rgba(lossless, "lossless");
+  EXPECT_TRUE(exact.has_alpha);
+  EXPECT_EQ(exact.bytes, (Bytes{200, 100, 50, 128, 10, 220, 90, 0}));
+  const Bytes lossy{82,  73,  70,  70,  98,  0,   0,   0,   87,  69,  66,  80,  86,  80,  56,  88,  10,  0,
+                    0,   0,   16,  0,   0,   0,   1,   0,   0,   0,   0,   0,   65,  76,  80,  72,  3,   0,
+                    0,   0,   0,   128, 0,   0,   86,  80,  56,  32,  56,  0,   0,   0,   48,  2,   0,   157,
+                    1,   42,  2,   0,   1,   0,   0,   192, 18,  37,  160, 2,   116, 186, 1,   248, 0,   3,
+                    33,  6,   251, 128, 0,   254, 7,   254, 59,  66,  127, 247, 121, 191, 105, 235, 218, 122,
+                    254, 166, 127, 252, 101, 79,  144, 31,  241, 149, 63,  226, 230, 0,   0,   0};
+  const ImageRgba near = read_image_rgba(lossy, "lossy");
+  const Bytes by_pillow{201, 100, 50, 128, 218, 116, 66, 0};
+  ASSERT_EQ(near.bytes.size(), by_pillow.size());
+  for (std::size_t i = 0; i < by_pillow.size(); ++i) {
+    EXPECT_NEAR(near.bytes[i], by_pillow[i], 1) << i;
+  }
+  const Bytes animated{82,  73, 70, 70, 138, 0,   0,   0,   87,  69, 66, 80, 86, 80,  56,  88, 10, 0,   0,  0,  18,
+                       0,   0,  0,  1,  0,   0,   0,   0,   0,   65, 78, 73, 77, 6,   0,   0,  0,  0,   0,  0,  0,
+                       0,   0,  65, 78, 77,  70,  42,  0,   0,   0,  0,  0,  0,  0,   0,   0,  1,  0,   0,  0,  0,
+                       0,   0,  0,  0,  2,   86,  80,  56,  76,  18, 0,  0,  0,  47,  1,   0,  0,  16,  15, 48, 100,
+                       131, 60, 50, 3,  24,  240, 200, 136, 254, 7,  65, 78, 77, 70,  44,  0,  0,  0,   0,  0,  0,
+                       0,   0,  0,  1,  0,   0,   0,   0,   0,   0,  0,  0,  2,  86,  80,  56, 76, 19,  0,  0,  0,
+                       47,  1,  0,  0,  16,  15,  48,  100, 131, 60, 50, 3,  24, 240, 168, 64, 68, 255, 3,  0};
+  EXPECT_THROW(static_cast<void>(read_image_rgba(animated, "animated")), Error);
+}
+
 TEST(BasisTexture, IsRefusedWhereRequiredAndReplacedWhereNot) {
   const test::TempFolder folder;
   folder.write("a.png", flat_picture("a.png", 20, 40, 60));
