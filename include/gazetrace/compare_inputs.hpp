@@ -51,7 +51,9 @@ struct ComparedGaze {
 // Error(usage) with a log and pictures of which the time is not known.
 ComparedGaze compared_gaze(const CompareJob& job, const CompareInputs& inputs, const FrameFacts& reference,
                            const FrameFacts& test, std::int32_t frame, int width_px, int height_px);
-// Error where an output would replace an input, another output or, unasked, what is there.
+// Pictures, their records, and the other files that the job names.
+std::vector<std::string> compared_files(const CompareJob& job, const CompareInputs& inputs);
+// check_outputs() for tables and error maps.
 void check_compare_outputs(const CompareJob& job, const CompareInputs& inputs, const std::vector<std::string>& metrics);
 // Of a metric's error maps.
 std::string map_pattern(const CompareJob& job, const std::string& metric);

@@ -43,6 +43,9 @@ enum class FarmKind : std::uint8_t { frames, sweep };
 struct FarmPlan {
   FarmKind kind = FarmKind::frames;
   std::string name, engine, program, container, job_file;
+  // What the tasks denoise by on the machine where the farm is planned, denoiser_description(): theirs must be the
+  // same. Empty: by nothing, or not known, as in a container.
+  std::string filter, denoiser;
   std::string folder;                // of the farm: `farm` in that of the run, absolute like the other paths
   std::string run_folder;            // where the outputs lie
   std::string run_name;              // what the run's own files there begin with, run_name_of() without the folder
@@ -91,6 +94,8 @@ struct FarmStatus {
   std::vector<TaskStatus> tasks;            // as farm_tasks()
   std::size_t frames = 0, frames_done = 0;  // pictures of the sequence
   [[nodiscard]] bool is_done() const;
+  // 3 where a task has failed, else 4 where one was interrupted, else 0.
+  [[nodiscard]] int exit_code() const;
 };
 // How finished files are looked at: their sizes alone, or their content, which reads all of them.
 enum class FileCheck : std::uint8_t { size, content };
@@ -101,17 +106,24 @@ std::string farm_status_text(const FarmPlan& plan, const FarmStatus& status);
 std::string farm_status_json(const FarmPlan& plan, const FarmStatus& status);
 // The chunks that are neither done nor running, counted from 0.
 std::vector<std::size_t> chunks_to_retry(const FarmStatus& status);
+// Error(input) where the folder of a run holds the plan of its farm, and that names another filter or denoiser than
+// this machine takes for the run. `run_name` as FarmPlan has it.
+void check_farm_denoiser(const std::string& run_folder, const std::string& run_name, const std::string& filter,
+                         const std::string& denoiser);
 // Whether chunks can be handed over once more while others run, and what follows waits for these, too.
 bool can_retry_beside_running(const FarmPlan& plan);
+// Whether the command of submit_command() ends when the last task has, and not when the engine has taken them.
+bool submit_waits(const FarmPlan& plan);
 
 struct LocalSettings {
   int processes = 1;           // at the same time
   std::function<bool()> stop;  // asked often; true: running tasks are asked to end, and no other begins
   std::function<void(const std::string& task, const std::string& what)> tell;  // "1", "begins"; "1", "exit code 0"
 };
-// Runs these chunks on this machine, and what follows once all chunks of the plan are done. Returns the last exit code
-// that was not 0, else 0. A task that ends with exit code 3, 4 or by a signal is tried again as often as the plan says.
-// Error(runtime) where another process is at the tasks of this folder.
+// Runs these chunks on this machine, and what follows once all chunks of the plan are done. Returns the worst exit
+// code: of a task that failed before that of one that was interrupted (4), else 0. A task that ends with exit code 3, 4
+// or by a signal is tried again as often as the plan says. Error(runtime) where another process is at the tasks of this
+// folder.
 int run_local(const FarmPlan& plan, const std::vector<std::size_t>& chunks, const LocalSettings& settings);
 
 }  // namespace gazetrace

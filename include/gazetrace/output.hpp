@@ -198,6 +198,10 @@ struct RunRecord {
 };
 std::string run_record_json(const RunRecord& record);
 RunRecord read_run_record(const std::string& path);  // Error(input)
+// Error(input) where two runs whose pictures are put together had different denoisers: other weights or loops make
+// another picture, which would flicker from frame to frame.
+void check_same_denoiser(const RunRecord& first, const std::string& first_path, const RunRecord& other,
+                         const std::string& other_path);
 
 // What the files that tell of a sequence begin with: its folder and its name without number and suffix, so that
 // out/frame.####.exr and out/frame.####.png, which one run writes, share "out/frame". A sequence that has no name
@@ -269,9 +273,12 @@ struct MergeResult {
 // a run or another merge is writing timing or record.
 MergeResult merge_runs(const std::string& where, const MergeOptions& options = {});
 
-// Makes the folder of an output where it is missing. Error(input) where the file exists and may not be replaced, and
-// where the folder cannot be made.
-void check_output_file(const std::string& path, bool overwrite);
+// Whether a command may write these files, decided before its work for every output of every command: no output is a
+// device, pipe, socket or folder, none is one of the `inputs` (files, or patterns of frames) whatever it is called, no
+// two are one file, and unless it may be replaced none is there; else Error(usage or input), which then advises
+// `remedy`. Makes their folders. Empty names are of outputs that nobody asked for.
+void check_outputs(std::vector<std::string> outputs, const std::vector<std::string>& inputs, bool may_replace,
+                   const std::string& remedy = "give `overwrite` or another name");
 // Writes the text to a temporary file beside `path`, and renames that.
 void write_text_atomically(const std::string& path, const std::string& text);
 

@@ -129,6 +129,8 @@ std::vector<FrameChunk> balanced_chunks(const JobSettings& job, const FramePlan&
 PipelineSettings pipeline_settings(const JobSettings& job);
 // Content hashes of all files that the job reads.
 std::map<std::string, std::string> digest_job_files(const JobSettings& job);
+// The files that it names and that are there, with those that its scene consists of.
+std::vector<std::string> job_files(const JobSettings& job);
 // The digest of everything that affects pixels: options, file contents, version. The same files under other names give
 // the same digest, and so do the parts of a sequence, however it is cut.
 std::string digest_job(const JobSettings& job, const std::map<std::string, std::string>& files,

@@ -83,6 +83,7 @@ struct SweepPlan {
   NamedValues common_settings;  // all options that no row varies
   NamedValues stated_settings;  // those of them that were chosen, or that decide light and sampling
   std::vector<std::string> varied;
+  std::vector<std::string> files;  // that its jobs read
 };
 
 // Of Student's distribution of t, for a probability in (0.5, 1).

@@ -99,6 +99,8 @@ def check_output(path, overwrite, read=()):
         raise Error(f"{path}: exists already; give --overwrite to replace it", "input")
     if path.is_dir():
         raise Error(f"{path}: is a folder; name a file")
+    if path.exists() and not path.is_file():
+        raise Error(f"{path}: is a device, pipe or socket, which no file replaces; name a file", "input")
 
 
 def write(path, content):
@@ -107,7 +109,10 @@ def write(path, content):
     rest = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        rest.write_bytes(data)
+        with open(rest, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
         os.replace(rest, path)
     except OSError as problem:
         with contextlib.suppress(OSError):

@@ -3,8 +3,9 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <span>
 
+#include "core/atomic_file.hpp"
 #include "core/text.hpp"
 #include "gazetrace/camera.hpp"
 
@@ -49,12 +50,8 @@ void write_camera_path(const std::vector<FramePose>& frames, RotationOrder order
     throw Error(ErrorKind::usage, path, "its suffix is not that of a known camera path format",
                 "end it in .chan for Nuke, .tum or .txt for TUM");
   }
-  std::ofstream file(path, std::ios::binary);
-  file << (suffix == ".chan" ? as_chan(frames, order) : as_tum(frames));
-  file.close();
-  if (!file) {
-    throw Error(ErrorKind::runtime, path, "cannot be written", "check the folder and the space left");
-  }
+  const std::string text = suffix == ".chan" ? as_chan(frames, order) : as_tum(frames);
+  write_bytes_atomically(path, std::as_bytes(std::span(text)));
 }
 
 }  // namespace gazetrace

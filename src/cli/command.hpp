@@ -26,6 +26,7 @@ struct Command {
   std::function<int()> run;  // called after parsing; returns an exit code
   // Takes a settings file, after the command line, whose options stay. Empty: the command takes none.
   std::function<void(const std::string& path)> read_config;
+  bool watches_signals = false;  // by an Interruption, or lets them go itself
 };
 
 // One function a command adds its options to its own subcommand.

@@ -57,21 +57,29 @@ void end_at_once(int signal) {
 
 }  // namespace
 
+void hold_signals() {
+  const sigset_t set = watched();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
+void let_signals_go() {
+  const sigset_t set = watched();
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
 Interruption::Interruption(std::chrono::nanoseconds grace, std::optional<std::chrono::nanoseconds> max_time)
     : grace_(std::chrono::duration_cast<Clock::duration>(grace)) {
   if (max_time) {
     latest_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(*max_time);
   }
-  const sigset_t set = watched();
-  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  hold_signals();
   watcher_ = std::thread([this] { watch(); });
 }
 
 Interruption::~Interruption() {
   ended_ = true;
   watcher_.join();
-  const sigset_t set = watched();
-  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+  let_signals_go();
 }
 
 bool Interruption::stop_before_frame(double frame_ms) {

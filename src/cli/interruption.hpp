@@ -13,6 +13,12 @@ namespace gazetrace {
 
 // Of TERM, INT, HUP, USR1 and XCPU the first one asks the run to end; a second INT ends the process at once. The
 // signals reach only threads that exist when this is made and those that it makes, so it comes before all others.
+//
+// From its first line on the program holds them, so that one that comes before is not lost: whoever makes no
+// Interruption lets them go.
+void hold_signals();
+void let_signals_go();
+
 class Interruption {
  public:
   using Clock = std::chrono::steady_clock;

@@ -2,16 +2,41 @@
 #include "cli/json_output.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "cli/command.hpp"
 #include "gazetrace/output.hpp"
 
 namespace gazetrace {
 
-void JsonOutput::check() const {
-  if (wanted() && !on_stdout()) {
-    check_output_file(path, may_replace && may_replace());
+namespace {
+
+// What the options and words of a command name, but for the one that asks for each output.
+std::vector<std::string> named_beside(const CLI::App* app, std::vector<std::string> outputs) {
+  std::vector<std::string> names;
+  for (; app != nullptr; app = app->get_parent()) {
+    for (const CLI::Option* option : app->get_options()) {
+      for (const std::string& value : option->results()) {
+        const auto asked = std::find(outputs.begin(), outputs.end(), value);
+        if (asked == outputs.end()) {
+          names.push_back(value);
+        } else {
+          outputs.erase(asked);
+        }
+      }
+    }
   }
+  return names;
+}
+
+}  // namespace
+
+void JsonOutput::check(const std::vector<std::string>& outputs, std::vector<std::string> inputs) const {
+  std::vector<std::string> all = outputs;
+  all.push_back(on_stdout() ? std::string() : path);
+  const std::vector<std::string> named = named_beside(app, all);
+  inputs.insert(inputs.end(), named.begin(), named.end());
+  check_outputs(all, inputs, may_replace());
 }
 
 void JsonOutput::print(const std::string& text, const std::function<std::string()>& json) const {
@@ -27,14 +52,16 @@ void add_json_option(CLI::App& app, JsonOutput& json) {
   CLI::Option* overwrite = app.get_option_no_throw("--overwrite");
   if (overwrite == nullptr) {
     overwrite = app.add_flag_function(
-        "--overwrite", [](std::int64_t) {}, "Replaces the file of --json when it is there");
+        "--overwrite", [](std::int64_t) {}, "Replaces files that are there");
   }
   json.may_replace = [overwrite] { return overwrite->count() > 0; };
+  json.app = &app;
 }
 
 void add_json_option(CLI::App& app, JsonOutput& json, const bool& overwrite) {
   app.add_option("--json", json.path, kJsonHelp)->type_name("[FILE]");
   json.may_replace = [&overwrite] { return overwrite; };
+  json.app = &app;
 }
 
 std::vector<std::string> with_json_joined(const std::vector<std::string>& arguments) {

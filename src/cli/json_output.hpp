@@ -21,12 +21,14 @@ struct JsonOutput {
 
   [[nodiscard]] bool wanted() const { return !path.empty(); }
   [[nodiscard]] bool on_stdout() const { return path == "-"; }
-  // Error(input) where the file may not be written; for the beginning of work that takes long.
-  void check() const;
+  // check_outputs() for the file and the command's other `outputs`, for the beginning of work that takes long. Inputs
+  // are whatever else the command line names, and `inputs`: what these name in turn.
+  void check(const std::vector<std::string>& outputs = {}, std::vector<std::string> inputs = {}) const;
   // Prints `text`, unless the JSON takes its place, and writes the JSON where it is wanted.
   void print(const std::string& text, const std::function<std::string()>& json) const;
 
   std::function<bool()> may_replace;  // whether a file that is there is replaced
+  const CLI::App* app = nullptr;      // of the command
 };
 
 // Adds --json to a command. Called after the command's other options: where it has no --overwrite, one is added.

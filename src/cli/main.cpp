@@ -16,6 +16,7 @@
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "cli/external_program.hpp"
+#include "cli/interruption.hpp"
 #include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/former_options.hpp"
@@ -155,6 +156,7 @@ int run(int argc, char** argv) {
 #include "cli/commands.def"
 #undef GAZETRACE_COMMAND
   if (const auto external = find_external_program(app, {argv + 1, argv + argc})) {
+    let_signals_go();
     return run_external_program(*external);
   }
 
@@ -184,6 +186,9 @@ int run(int argc, char** argv) {
     }
     command.read_config(config);
   }
+  if (!command.watches_signals) {
+    let_signals_go();
+  }
   return command.run();
 }
 
@@ -192,6 +197,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace gazetrace;
+  hold_signals();                 // before the first thread
   std::signal(SIGPIPE, SIG_IGN);  // a reader of stdout that goes away is no error: see print_result
   std::signal(SIGCHLD, SIG_DFL);  // ignored by who started this, no child would have an exit code
 #ifdef SIGXFSZ

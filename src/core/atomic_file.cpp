@@ -69,6 +69,14 @@ class TemporaryFile {
     }
   }
 
+  // Onto the disk, before it has its name: after a loss of power what has a name is whole.
+  void flush() const {
+    if (::fsync(descriptor_) != 0 && errno != EINVAL &&
+        errno != ENOTSUP) {  // file systems that cannot have no more to give
+      fail(final_path_, "cannot write the file", errno);
+    }
+  }
+
   // False where there is a file of the final name.
   bool put_in_place_once() {
     if (temporary_.empty() ? link_unnamed(final_path_.c_str()) : ::link(temporary_.c_str(), final_path_.c_str()) == 0) {
@@ -141,6 +149,16 @@ class TemporaryFile {
   int descriptor_ = -1;
 };
 
+// Its names. Where a folder cannot be flushed, as in some network file systems, names reach the disk with the files.
+void flush_folder_of(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const int file = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file >= 0) {
+    ::fsync(file);
+    ::close(file);
+  }
+}
+
 }  // namespace
 
 void refuse_special_file(const std::string& path) {
@@ -152,14 +170,35 @@ void refuse_special_file(const std::string& path) {
 bool create_file_once(const std::string& path, std::span<const std::byte> bytes) {
   TemporaryFile file(path);
   file.write(bytes);
-  return file.put_in_place_once();
+  file.flush();
+  const bool is_ours = file.put_in_place_once();
+  flush_folder_of(path);
+  return is_ours;
 }
 
 void write_bytes_atomically(const std::string& path, std::span<const std::byte> bytes) {
   refuse_special_file(path);
   TemporaryFile file(path);
   file.write(bytes);
+  file.flush();
   file.put_in_place();
+  flush_folder_of(path);
+}
+
+void put_file_in_place(const std::string& temporary, const std::string& path) {
+  const int file = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
+  const int flushed = file < 0 ? -1 : ::fsync(file);
+  const int problem = errno;
+  if (file >= 0) {
+    ::close(file);
+  }
+  if (flushed != 0 && problem != EINVAL && problem != ENOTSUP) {
+    fail(path, "cannot write the file", problem);
+  }
+  if (::rename(temporary.c_str(), path.c_str()) != 0) {
+    fail(path, "cannot put the finished file in place", errno);
+  }
+  flush_folder_of(path);
 }
 
 }  // namespace gazetrace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes files so that they exist completely or not at all, whenever the process is killed. Nothing is forced onto the
-// disk: after a loss of power, or a crash of the system, a file may be there that is empty or has gaps. Where that
-// matters, files are read back against their digests (WrittenFile).
+// Writes files so that they exist completely or not at all, whenever the process is killed. A file is on the
+// disk before it has its name, and its name before the writer goes on, so that the same holds for a loss of power.
 #pragma once
 
 #include <cstddef>
@@ -15,6 +14,9 @@ namespace gazetrace {
 // write the same file at once, each succeeds and the bytes of the last one stay. On failure no other file is left, what
 // was under `path` stays as it was, and Error(runtime) gives the path and the system's reason.
 void write_bytes_atomically(const std::string& path, std::span<const std::byte> bytes);
+
+// The same for a file that another program has written under a name of its own beside `path`.
+void put_file_in_place(const std::string& temporary, const std::string& path);
 
 // A device, pipe or socket is no output: Error(input). write_bytes_atomically() asks it itself.
 void refuse_special_file(const std::string& path);

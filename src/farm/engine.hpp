@@ -24,6 +24,8 @@ struct FarmEngine {
   const char* progress;
   // Whether chunks can be handed over while others run, and what follows waits for both.
   bool joins_running;
+  // Whether what submit() tells ends when the last task has.
+  bool waits;
 };
 
 #define GAZETRACE_FARM_ENGINE(name, description) extern const FarmEngine kFarmEngine_##name;

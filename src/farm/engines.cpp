@@ -81,6 +81,10 @@ bool can_retry_beside_running(const FarmPlan& plan) {
   return farm_engine(plan.engine).joins_running;
 }
 
+bool submit_waits(const FarmPlan& plan) {
+  return farm_engine(plan.engine).waits;
+}
+
 std::int64_t time_after_chunks_s(const FarmPlan& plan) {
   constexpr std::int64_t kLeast_s = 3600;
   if (plan.time_s == 0) {

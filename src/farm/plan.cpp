@@ -11,6 +11,7 @@
 #include "farm/engine.hpp"
 #include "farm/plan.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/reconstruct.hpp"
 #include "gazetrace/resolve.hpp"
 #include "gazetrace/sweep_plan.hpp"
 #include "job/chunks.hpp"
@@ -175,6 +176,10 @@ FarmPlan plan_farm(const FarmSettings& settings) {
   plan.files_per_frame = static_cast<std::int32_t>(!output.exr.pattern.empty()) +
                          static_cast<std::int32_t>(!output.display.pattern.empty()) +
                          static_cast<std::int32_t>(!output.map_pattern.empty());
+  if (plan.container.empty()) {
+    plan.filter = resolved.job.settings.filter;
+    plan.denoiser = plan.filter == "oidn" ? denoiser_description() : std::string();
+  }
   if (plan.memory_mib == 0) {
     plan.memory_mib = memory_mib(resolved.job.settings, resolved.plan);
   }

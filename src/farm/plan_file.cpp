@@ -26,6 +26,8 @@ void each_member(Plan& plan, const Visit& visit) {
   visit("program", plan.program);
   visit("container", plan.container);
   visit("job_file", plan.job_file);
+  visit("filter", plan.filter);
+  visit("denoiser", plan.denoiser);
   visit("folder", plan.folder);
   visit("run_folder", plan.run_folder);
   visit("run_name", plan.run_name);
@@ -58,6 +60,26 @@ std::string farm_plan_json(const FarmPlan& plan) {
   Json json;
   each_member(plan, [&](const char* name, const auto& value) { json[name] = value; });
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void check_farm_denoiser(const std::string& run_folder, const std::string& run_name, const std::string& filter,
+                         const std::string& denoiser) {
+  FarmPlan plan;
+  try {
+    plan = read_farm(run_folder);
+  } catch (const Error&) {
+    return;  // there is none that could be asked
+  }
+  if (plan.run_name != run_name || plan.filter.empty() || (plan.filter == filter && plan.denoiser == denoiser)) {
+    return;
+  }
+  const auto words = [](const std::string& name, const std::string& by) {
+    return "'" + name + "'" + (by.empty() ? "" : " by '" + by + "'");
+  };
+  throw Error(ErrorKind::input, plan.folder + "/farm.json",
+              "the farm's frames are filtered with " + words(plan.filter, plan.denoiser) + ", and here it would be " +
+                  words(filter, denoiser),
+              "give this machine the same library and kind of processor, or call 'gazetrace farm' on one like it");
 }
 
 FarmPlan read_farm(const std::string& folder) {

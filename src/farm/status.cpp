@@ -229,6 +229,13 @@ bool FarmStatus::is_done() const {
   return std::all_of(tasks.begin(), tasks.end(), [](const TaskStatus& task) { return task.state == TaskState::done; });
 }
 
+int FarmStatus::exit_code() const {
+  const auto any = [&](TaskState state) {
+    return std::any_of(tasks.begin(), tasks.end(), [&](const TaskStatus& task) { return task.state == state; });
+  };
+  return any(TaskState::failed) ? 3 : any(TaskState::interrupted) ? 4 : 0;
+}
+
 FarmStatus farm_status(const FarmPlan& plan, FileCheck check) {
   FarmStatus status;
   const TaskStatus finish = observe_finish(plan, check);

@@ -140,7 +140,9 @@ case $1 in
     for number in $(each_chunk "$1"); do
       chunk "$number"
       code=$?
-      [ "$code" -eq 0 ] || worst=$code
+      if [ "$worst" -eq 0 ] || { [ "$code" -ne 0 ] && [ "$worst" -eq 4 ]; } || { [ "$code" -ne 4 ] && [ "$code" -gt "$worst" ]; }; then
+        worst=$code
+      fi
       { [ "$code" -eq 4 ] || [ "$ended" -eq 1 ]; } && break
     done
     code=$worst

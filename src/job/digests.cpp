@@ -60,7 +60,7 @@ std::string curve_file(const JobSettings& job) {
 
 }  // namespace
 
-std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
+std::vector<std::string> job_files(const JobSettings& job) {
   const fs::path camera_path(job.camera_path);
   // COLMAP keeps the lenses in a file beside that of its pictures.
   const fs::path lenses = camera_path.filename() == "images.txt" ? camera_path.parent_path() / "cameras.txt" : "";
@@ -72,7 +72,11 @@ std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
   }
   const std::vector<std::string> densities = density_picture_files(job.foveation);
   files.insert(files.end(), densities.begin(), densities.end());
-  return digest_files(files, job.threads);
+  return files;
+}
+
+std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
+  return digest_files(job_files(job), job.threads);
 }
 
 std::string digest_job(const JobSettings& job, const std::map<std::string, std::string>& files,

@@ -71,28 +71,6 @@ std::set<fs::path> output_folders(const OutputSettings& output) {
   return folders;
 }
 
-// No output may replace another output or a file that is read.
-void check_names_differ(std::vector<std::string> outputs, const std::map<std::string, std::string>& inputs) {
-  std::error_code ignored;
-  for (const std::string& output : outputs) {
-    if (!fs::exists(output, ignored)) {
-      continue;
-    }
-    for (const auto& [input, digest] : inputs) {
-      if (fs::equivalent(output, input, ignored)) {
-        throw Error(ErrorKind::usage, output, "this output would replace an input", "give another name");
-      }
-    }
-  }
-  for (std::string& output : outputs) {
-    output = fs::absolute(output).lexically_normal().string();
-  }
-  std::sort(outputs.begin(), outputs.end());
-  if (const auto twice = std::adjacent_find(outputs.begin(), outputs.end()); twice != outputs.end()) {
-    throw Error(ErrorKind::usage, *twice, "two outputs have this name", "give each its own");
-  }
-}
-
 // Until the next version: a run of the version before, whose files had the names of no sequence, goes on under the
 // names of today.
 void take_former_names(const OutputSettings& output, const std::vector<std::string>& files) {
@@ -143,21 +121,6 @@ void check_earlier_run(const PipelineSettings& settings, const std::vector<std::
                   fmt::format("{} is of a run over frames {}, and frame {} is not asked for now", record_path,
                               format_frame_list(before), frame),
                   "give frames that include those, or another folder");
-    }
-  }
-}
-
-void refuse_existing(const PipelineSettings& settings, const std::vector<std::string>& files) {
-  if (settings.output.overwrite || settings.output.resume) {
-    return;
-  }
-  for (const std::string& path : files) {
-    if (fs::exists(path)) {
-      const bool is_record = path.ends_with(".json") || path.ends_with(".csv");
-      throw Error(ErrorKind::input, path, "this output exists already",
-                  is_record && !settings.is_part
-                      ? "give `overwrite`, `resume`, `chunk` for a part of a sequence, or another folder"
-                      : "give `overwrite`, `resume` or another name");
     }
   }
 }
@@ -233,9 +196,13 @@ PipelineSettings pipeline_settings(const JobSettings& job) {
 
 void make_output_folders(const ResolvedJob& resolved) {
   const PipelineSettings& settings = resolved.pipeline;
-  const std::vector<std::string> files = output_files(settings, resolved.frames);
-  check_names_differ(files, resolved.input_digests);
-  refuse_existing(settings, files);
+  std::vector<std::string> inputs;
+  for (const auto& [path, digest] : resolved.input_digests) {
+    inputs.push_back(path);
+  }
+  check_outputs(output_files(settings, resolved.frames), inputs, settings.output.overwrite || settings.output.resume,
+                settings.is_part ? "give `overwrite`, `resume` or another name"
+                                 : "give `overwrite`, `resume`, `chunk` for a part of a sequence, or another name");
   for (const fs::path& folder : output_folders(settings.output)) {
     prove_writable(folder);
   }
@@ -257,11 +224,6 @@ void prepare_outputs(const ResolvedJob& resolved) {
     }
   }
   write_down(resolved.chunk_borders);
-  for (const std::string& path : files) {
-    if (const fs::path folder = fs::path(path).parent_path(); !folder.empty() && !fs::exists(folder)) {
-      prove_writable(folder);  // a frame's own
-    }
-  }
 }
 
 }  // namespace gazetrace

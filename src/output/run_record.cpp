@@ -82,6 +82,16 @@ std::string run_record_json(const RunRecord& record) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
+void check_same_denoiser(const RunRecord& first, const std::string& first_path, const RunRecord& other,
+                         const std::string& other_path) {
+  if (first.denoiser != other.denoiser) {
+    throw Error(
+        ErrorKind::input, other_path,
+        fmt::format("frames were denoised by '{}', those of {} by '{}'", other.denoiser, first_path, first.denoiser),
+        "render them all with one library on one kind of processor");
+  }
+}
+
 RunRecord read_run_record(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {

@@ -123,13 +123,7 @@ RunRecord join_records(const std::vector<RunPart>& parts, const std::string& fra
     same("build", whole.build, record.build);
     same("instruction set", whole.instruction_set, record.instruction_set);
     same("ray library", whole.ray_library, record.ray_library);
-    // Other weights or loops make another picture, which would flicker from frame to frame.
-    if (whole.denoiser != record.denoiser) {
-      throw Error(ErrorKind::input, part.record_path,
-                  fmt::format("frames were denoised by '{}', those of {} by '{}'", record.denoiser,
-                              parts.front().record_path, whole.denoiser),
-                  "render them all with one library on one kind of processor");
-    }
+    check_same_denoiser(whole, parts.front().record_path, record, part.record_path);
     for (const auto& [key, value] : record.facts) {
       const bool shared = std::all_of(parts.begin(), parts.end(), [&, k = key, v = value](const RunPart& other) {
         const auto it = other.record.facts.find(k);
@@ -152,11 +146,7 @@ MergeResult merge_runs(const std::string& where, const MergeOptions& options) {
   const std::string timing_path = timing_file_name(parts.front().run_name, "", false);
   const std::string record_path = run_record_file_name(parts.front().run_name, "", false);
   const OutputLock lock = lock_files({{directory, {timing_path, record_path}}});
-  for (const std::string& path : {timing_path, record_path}) {
-    if (!options.overwrite && std::filesystem::exists(path)) {
-      throw Error(ErrorKind::usage, path, "exists already", "give `overwrite` to replace it");
-    }
-  }
+  check_outputs({timing_path, record_path}, {}, options.overwrite);
   MergeResult result;
   result.warnings = lock.warnings();
   if (!options.trust_files) {

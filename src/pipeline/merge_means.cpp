@@ -111,13 +111,8 @@ void check_frame(const MeanSettings& settings, FrameMean& mean) {
     if (!stamps.front().is_mean) {
       throw Error(ErrorKind::usage, mean.path, "is a render, which no mean takes the place of", "name another output");
     }
-  } else if (!settings.overwrite && is_there(mean.path)) {
-    throw Error(ErrorKind::usage, mean.path, "exists already", "give `resume` to add to it, or `overwrite`");
   }
   for (const std::string& path : mean.inputs) {
-    if (is_there(mean.path) && fs::equivalent(path, mean.path)) {  // whatever the spelling of both patterns
-      throw Error(ErrorKind::usage, mean.path, "is one of the renders", "name another output");
-    }
     const MeanStamp stamp = read_mean_stamp(path);
     const auto is_behind = [&](const auto& seed) { return stamps.front().seeds.contains(seed.first); };
     if (goes_on && stamps.front().mean_digest == stamp.mean_digest &&
@@ -135,25 +130,37 @@ void check_frame(const MeanSettings& settings, FrameMean& mean) {
   mean.inputs = std::move(taken);
 }
 
-// The record of the first render that has one which is of its pictures; of a mean that goes on, its own.
+// The record of the first render that has one which is of its pictures; of a mean that goes on, its own. Error(input)
+// where others are of another denoiser.
 std::optional<RunRecord> record_of(const MeanSettings& settings, std::int32_t frame) {
+  std::optional<RunRecord> first;
+  std::string first_path;
+  const auto take = [&](const std::string& path, RunRecord record) {
+    if (first) {
+      check_same_denoiser(*first, first_path, record, path);
+    } else {
+      first = std::move(record);
+      first_path = path;
+    }
+  };
   const std::string own = run_record_file_name(run_name_of(settings.output), "", false);
   if (settings.resume && is_there(own)) {
-    return read_run_record(own);
+    take(own, read_run_record(own));
   }
   for (const std::string& pattern : settings.renders) {
     const std::string path = run_record_file_name(run_name_of(pattern), "", false);
-    if (!is_there(path)) {
+    const std::string picture = frame_file_name(pattern, frame);
+    if (!is_there(path) || !is_there(picture)) {
       continue;
     }
     RunRecord record = read_run_record(path);
-    const std::string digest = read_settings_digest(frame_file_name(pattern, frame));
+    const std::string digest = read_settings_digest(picture);
     const auto& parts = record.part_digests;
     if (record.settings_digest == digest || std::find(parts.begin(), parts.end(), digest) != parts.end()) {
-      return record;
+      take(path, std::move(record));
     }
   }
-  return std::nullopt;
+  return first;
 }
 
 // A mean has the name of its sequence for its record, and a render beside it may have the same.
@@ -194,12 +201,14 @@ MergeResult merge_means(const MeanSettings& settings) {
   if (!settings.output.ends_with(".exr")) {
     throw Error(ErrorKind::usage, settings.output, "a mean is a linear picture", "end its name in .exr");
   }
-  if (std::find(settings.renders.begin(), settings.renders.end(), settings.output) != settings.renders.end()) {
-    throw Error(ErrorKind::usage, settings.output, "is one of the renders", "give `resume` to add to a mean");
-  }
   MergeResult result;
   std::map<std::int32_t, FrameMean> frames = frames_of(settings, result.warnings);
-  fs::create_directories(folder_of_frames(settings.output));
+  std::vector<std::string> outputs;
+  for (const auto& [number, mean] : frames) {
+    outputs.push_back(mean.path);
+  }
+  check_outputs(outputs, settings.renders, settings.overwrite || settings.resume,
+                "give `resume` to add to it, or `overwrite`");
   const OutputLock lock = lock_means(settings.output, frames, result.warnings);
   std::vector<std::int32_t> numbers;
   std::size_t most = 0;

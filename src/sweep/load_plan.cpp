@@ -37,6 +37,11 @@ class PlanMaker {
     for (const SweepFileGaze& gaze : file_.gazes) {
       plan.gazes.emplace_back(gaze.name, "(" + options_text(gaze.options) + ")");
     }
+    for (const auto& [names, digests] : digests_) {
+      for (const auto& [path, digest] : digests) {
+        plan.files.push_back(path);
+      }
+    }
     std::sort(jobs_.warnings.begin(), jobs_.warnings.end());
     jobs_.warnings.erase(std::unique(jobs_.warnings.begin(), jobs_.warnings.end()), jobs_.warnings.end());
     return std::move(jobs_);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -11,6 +12,7 @@
 #include "core/text.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/output.hpp"
+#include "gazetrace/reconstruct.hpp"
 #include "sweep/sealed_json.hpp"
 
 namespace gazetrace {
@@ -119,12 +121,20 @@ auto load(const std::string& path, const Read& read,
   }
 }
 
+// Empty where no row is denoised.
+std::string denoiser_of(const SweepPlan& plan) {
+  const auto denoises = [](const auto& one) { return one.pipeline.reconstruction.filter == "oidn"; };
+  const bool any = std::any_of(plan.tests.begin(), plan.tests.end(), denoises) ||
+                   std::any_of(plan.references.begin(), plan.references.end(), denoises);
+  return any ? denoiser_description() : std::string();
+}
+
 }  // namespace
 
-void claim_directory(const std::string& directory, const std::string& machine) {
+void claim_directory(const SweepPlan& plan, const std::string& directory, const std::string& machine) {
   const std::string path = directory + kStateFile;
   const std::vector<std::pair<const char*, std::string>> mine{
-      {"format", kFormat}, {"build", build_digest()}, {"machine", machine}};
+      {"format", kFormat}, {"build", build_digest()}, {"denoiser", denoiser_of(plan)}, {"machine", machine}};
   const auto read = [&] {
     return load(
         path,

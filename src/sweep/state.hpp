@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gazetrace/output.hpp"
+#include "gazetrace/sweep.hpp"
 #include "sweep/runs.hpp"
 
 namespace gazetrace {
@@ -19,10 +20,10 @@ namespace gazetrace {
 std::string build_digest();
 std::string machine_description();  // processor and number of threads
 
-// Marks an empty folder as this build's and that machine's; `machine` is kManyMachines where tasks share the folder.
-// Error(input) where the folder holds work of another build or machine.
+// Marks an empty folder as this build's, its denoiser's where the plan denoises, and that machine's; `machine` is
+// kManyMachines where tasks share the folder. Error(input) where the folder holds work of another of these.
 inline constexpr const char* kManyMachines = "tasks on any machine";
-void claim_directory(const std::string& directory, const std::string& machine);
+void claim_directory(const SweepPlan& plan, const std::string& directory, const std::string& machine);
 // Removes what a sweep has left in the folder, and nothing else.
 void clear_directory(const std::string& directory);
 

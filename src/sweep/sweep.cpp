@@ -37,7 +37,7 @@ SweepDirectory open_directory(const SweepPlan& plan, const std::optional<SweepTa
   if (plan.restart) {
     clear_directory(plan.directory);
   }
-  claim_directory(plan.directory, machine);
+  claim_directory(plan, plan.directory, machine);
   drop_damaged(plan.directory, plan.trust_files, plan.tests.front().pipeline.threads, observer);
   return directory;
 }
@@ -78,10 +78,10 @@ void run_sweep_task(const SweepPlan& plan, const SweepTask& task, const SweepObs
 
 Results merge_sweep(const SweepPlan& plan, const std::vector<std::string>& folders, const SweepObserver& observer) {
   if (folders.empty()) {
-    check_chunks_in(plan.directory);
+    check_chunks_in(plan, plan.directory);
   }
   for (const std::string& folder : folders) {
-    check_chunks_in(folder);
+    check_chunks_in(plan, folder);
   }
   const SweepDirectory directory = open_directory(plan, std::nullopt, kManyMachines, observer);
   for (const std::string& folder : folders) {

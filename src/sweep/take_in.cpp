@@ -30,12 +30,12 @@ void take_file(const fs::path& from, const fs::path& to) {
 
 }  // namespace
 
-void check_chunks_in(const std::string& folder) {
+void check_chunks_in(const SweepPlan& plan, const std::string& folder) {
   if (!fs::is_regular_file(folder + "/state.json")) {
     throw Error(ErrorKind::input, folder, "holds no chunk of a sweep",
                 "give the folders that the chunks were written to");
   }
-  claim_directory(folder, kManyMachines);
+  claim_directory(plan, folder, kManyMachines);
 }
 
 void take_in(const std::string& folder, const std::string& directory) {

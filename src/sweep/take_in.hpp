@@ -4,10 +4,12 @@
 
 #include <string>
 
+#include "gazetrace/sweep.hpp"
+
 namespace gazetrace {
 
 // Error(input) for a folder that no task of a sweep has worked in, or one of another build.
-void check_chunks_in(const std::string& folder);
+void check_chunks_in(const SweepPlan& plan, const std::string& folder);
 
 // Runs, pictures and finished references of a task's folder that are not in the directory yet. Nothing there is
 // replaced, and files are there completely or not at all. Error(input) for a folder without a task's work, or of

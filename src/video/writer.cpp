@@ -14,8 +14,10 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <span>
 
+#include "core/atomic_file.hpp"
 #include "core/text.hpp"
 #include "gazetrace/video.hpp"
 
@@ -81,6 +83,15 @@ std::vector<std::string> arguments_of(const std::string& output, int width_px, i
   return list;
 }
 
+std::string text_of(std::FILE* file) {
+  std::string text;
+  std::rewind(file);
+  for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) {
+    text += static_cast<char>(c);
+  }
+  return text;
+}
+
 std::string system_message(int error) {
   return std::generic_category().message(error);
 }
@@ -111,6 +122,7 @@ struct VideoWriter::Impl {
   pid_t child = -1;
   int socket = -1;
   std::FILE* errors = nullptr;  // the program's messages
+  std::size_t frames = 0;       // that were sent
   bool is_finished = false;
 
   ~Impl() {
@@ -148,11 +160,7 @@ struct VideoWriter::Impl {
 
   // The last line that the program wrote.
   [[nodiscard]] std::string said() const {
-    std::string text;
-    std::rewind(errors);
-    for (int c = std::fgetc(errors); c != EOF; c = std::fgetc(errors)) {
-      text += static_cast<char>(c);
-    }
+    const std::string text = text_of(errors);
     std::string last;
     LineReader lines(text);
     for (std::string_view line; lines.next(line);) {
@@ -168,9 +176,32 @@ struct VideoWriter::Impl {
     if (child > 0) {
       wait_for_child();
     }
-    const std::string words = said();
+    fail(said());
+  }
+
+  [[noreturn]] void fail(const std::string& words) const {
     throw Error(ErrorKind::runtime, path, program + " failed" + (words.empty() ? "" : ": " + words),
                 "check free space and the codecs of this ffmpeg (ffmpeg -encoders)");
+  }
+
+  // Whether all frames that were sent can be read from what it wrote.
+  bool is_whole() {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> list(std::tmpfile(), std::fclose);
+    if (list == nullptr) {
+      return false;
+    }
+    start({program, "-hide_banner", "-loglevel", "error", "-xerror", "-i", temporary, "-map", "0:v", "-c", "copy", "-f",
+           "framecrc", "pipe:1"},
+          list.get());
+    close_socket();
+    const bool ended_well = wait_for_child();
+    const std::string text = text_of(list.get());  // a line for each frame, and some that begin with #
+    std::size_t count = 0;
+    LineReader lines(text);
+    for (std::string_view line; lines.next(line);) {
+      count += trim(line).empty() || line.front() == '#' ? 0 : 1;
+    }
+    return ended_well && count == frames;
   }
 
   void send_bytes(std::span<const std::uint8_t> bytes) {
@@ -186,12 +217,16 @@ struct VideoWriter::Impl {
     }
   }
 
-  void start(const std::vector<std::string>& list) {
+  // `out`: where its output goes; nullptr: nowhere.
+  void start(const std::vector<std::string>& list, std::FILE* out = nullptr) {
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
       throw Error(ErrorKind::runtime, program, "cannot be started: " + system_message(errno));
     }
     socket = ends[0];
+    if (errors != nullptr) {
+      std::fclose(errors);
+    }
     errors = std::tmpfile();
     if (errors == nullptr) {
       ::close(ends[1]);
@@ -205,7 +240,11 @@ struct VideoWriter::Impl {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    if (out != nullptr) {
+      posix_spawn_file_actions_adddup2(&actions, ::fileno(out), STDOUT_FILENO);
+    } else {
+      posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    }
     posix_spawn_file_actions_adddup2(&actions, ::fileno(errors), STDERR_FILENO);
     // In a process group of its own, so that an interrupt from the keyboard does not reach it.
     posix_spawnattr_t attributes;
@@ -247,6 +286,7 @@ void VideoWriter::add(const DisplayImage& frame) {
                             frame.height_px, frame.bits, impl_->width_px, impl_->height_px),
                 "give pictures of one size");
   }
+  ++impl_->frames;
   const bool grows = impl_->coded_width_px > impl_->width_px;
   const std::size_t row = 3 * static_cast<std::size_t>(frame.width_px);
   for (int y = 0; y < impl_->coded_height_px; ++y) {
@@ -265,13 +305,13 @@ void VideoWriter::add(const DisplayImage& frame) {
 
 void VideoWriter::finish() {
   impl_->close_socket();
-  // On a full disk some versions say so, leave a cut film and end with 0. Nothing but errors is said at this log level.
-  if (!impl_->wait_for_child() || !impl_->said().empty()) {
-    impl_->fail();
+  // On a full disk some versions say so, leave a cut film and end with 0. Other errors that they tell of harm nothing.
+  const bool ended_well = impl_->wait_for_child();
+  const std::string words = impl_->said();
+  if (!ended_well || (!words.empty() && !impl_->is_whole())) {
+    impl_->fail(words);
   }
-  if (::rename(impl_->temporary.c_str(), impl_->path.c_str()) != 0) {
-    throw Error(ErrorKind::runtime, impl_->path, "cannot put the finished video in place: " + system_message(errno));
-  }
+  put_file_in_place(impl_->temporary, impl_->path);
   impl_->is_finished = true;
 }
 

@@ -69,7 +69,7 @@ class RealEngines(harness.CliTest):
         return self.pictures("whole")
 
     def status(self):
-        return json.loads(self.run_ok("farm", "status", "out", "--json").stdout)
+        return json.loads(self.run_program("farm", "status", "out", "--json").stdout)
 
     def check(self, whole, told, harm):
         """The farm is done, and its pictures are those of one run."""
@@ -171,18 +171,13 @@ class RealEngines(harness.CliTest):
         begin = time.monotonic()
         command = ["openjd", "run", "out/farm/template.json", "--step", "after-1", "--run-dependencies"]
         # Taken away in the middle, as by a worker that is stopped; then once more from the beginning. The first task that
-        # fails ends a run of the reference implementation, too.
+        # fails would end a run of the reference implementation: one that is killed tries itself again.
         self.run_openjd(command, Harm(self.attempts, {1: "taken away"}, self.moment), {})
-        harmed = {}
-        for chunk in range(1, WANTED + 1):
-            harm = Harm(self.attempts, {chunk: "killed"}, self.moment)
-            code, told = self.run_openjd(command, harm, {"killed": kill})
-            self.assertTrue(code != 0 and harm.is_over(), f"{code}: {harm}\n{told}")
-            harmed.update(harm.done)
-        code, told = self.run_openjd(command, None, {})
-        self.assertEqual(code, 0, told[-3000:])
+        harm = Harm(self.attempts, {chunk: "killed" for chunk in range(1, WANTED + 1)}, self.moment)
+        code, told = self.run_openjd(command, harm, {"killed": kill})
+        self.assertTrue(code == 0 and harm.is_over(), f"{code}: {harm}\n{told[-3000:]}")
         self.assertIn("openjd_progress: 100.0", told)
-        self.check(whole, told[-3000:], harmed)
+        self.check(whole, told[-3000:], harm.done)
         self.report(time.monotonic() - begin)
 
     def run_openjd(self, command, harm, ways):

@@ -76,7 +76,11 @@ class FarmFiles(Farm):
         return (program or self.run_ok)("farm", job, *arguments)
 
     def status(self):
-        return json.loads(self.run_ok("farm", "status", "out", "--json").stdout)
+        told = self.run_program("farm", "status", "out", "--json")
+        status = json.loads(told.stdout)
+        states = {task["state"] for task in status["tasks"]}
+        self.assertEqual(told.returncode, 3 if "failed" in states else 4 if "interrupted" in states else 0, told.stdout)
+        return status
 
     def whole(self, job):
         self.run_ok("render", "--config", job, "-o", "whole/f.####.exr", "-o", "whole/f.####.png", "--quiet")
@@ -279,7 +283,7 @@ class Engines(FarmFiles):
 
     def states(self):
         told = self.run_program("farm", "status", "out", "--json")
-        return {task["task"]: task["state"] for task in json.loads(told.stdout)["tasks"]} if told.returncode == 0 else {}
+        return {task["task"]: task["state"] for task in json.loads(told.stdout)["tasks"]} if told.stdout else {}
 
 
 if __name__ == "__main__":

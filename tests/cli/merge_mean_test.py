@@ -158,9 +158,9 @@ class MergeMean(harness.CliTest):
                 self.assert_refused(["merge", "--mean", *renders, "-o", f"{out}/f.####.exr"], words)
         self.assert_refused(["merge", "--mean", a, b], ["--output"])
         self.assert_refused(["merge", "--mean", a, b, "-o", "m.png"], [".exr"])
-        self.assert_refused(["merge", "--mean", a, b, "-o", a, "--overwrite"], ["one of the renders"])
+        self.assert_refused(["merge", "--mean", a, b, "-o", a, "--overwrite"], ["replace an input"])
         same = a.replace("####", "%04d")  # the same files, spelled otherwise
-        self.assert_refused(["merge", "--mean", a, b, "-o", same, "--overwrite"], ["one of the renders"])
+        self.assert_refused(["merge", "--mean", a, b, "-o", same, "--overwrite"], ["replace an input"])
         beside = a.replace(".####", "_####")  # a record of the same name
         self.assert_refused(["merge", "--mean", a, b, "-o", beside, "--overwrite"], ["record of a render"])
         self.assert_refused(["merge", "--mean", b, "-o", a, "--resume"], ["is a render"])

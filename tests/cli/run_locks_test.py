@@ -152,6 +152,11 @@ class Locks(Running):
             if told.returncode == 77:
                 self.skipTest("system calls cannot be filtered here")
             self.assertEqual(json.loads(told.stdout)["tasks"][0]["state"], state, told.stderr)
+        # Somebody may be at it: nobody begins it a second time unasked.
+        refused = subprocess.run([harness.PROGRAM, "farm", "retry", "out"], cwd=self.folder, capture_output=True, text=True,
+                                 preexec_fn=without_locks, check=False)
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        self.assertIn("task 1 still runs cannot be told", refused.stderr)
 
     def test_folders_of_any_name(self):
         self.run_ok("render", *JOB, "-o", "f.####.exr", "-o", "./g.####.png", "--frames", "1")

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <sys/wait.h>
+
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -38,14 +40,8 @@ std::vector<std::size_t> all_chunks(const FarmPlan& plan) {
   return chunks;
 }
 
-int run_here(const FarmPlan& plan, const std::vector<std::size_t>& chunks, int processes, Interruption& interruption) {
-  LocalSettings local;
-  local.processes = processes;
-  local.stop = [&] { return interruption.stop_before_frame(0); };
-  local.tell = [](const std::string& task, const std::string& what) {
-    std::fprintf(stderr, "task %s: %s\n", task.c_str(), what.c_str());
-  };
-  const int code = run_local(plan, chunks, local);
+// Of tasks that have all ended: what became of them.
+int tell_end(const FarmPlan& plan, int code) {
   const FarmStatus status = farm_status(plan);
   print_result(farm_status_text(plan, status));
   if (code == 0 && !status.is_done()) {
@@ -61,10 +57,23 @@ int run_here(const FarmPlan& plan, const std::vector<std::size_t>& chunks, int p
   return code;
 }
 
+int run_here(const FarmPlan& plan, const std::vector<std::size_t>& chunks, int processes, Interruption& interruption) {
+  LocalSettings local;
+  local.processes = processes;
+  local.stop = [&] { return interruption.stop_before_frame(0); };
+  local.tell = [](const std::string& task, const std::string& what) {
+    std::fprintf(stderr, "task %s: %s\n", task.c_str(), what.c_str());
+  };
+  return tell_end(plan, run_local(plan, chunks, local));
+}
+
 // Made before the first thread, so that its signals reach no other; the tasks have grace times of their own.
 std::unique_ptr<Interruption> watch_signals(const std::string& engine) {
-  // Programs of other engines would inherit the blocked signals.
-  return engine == "local" ? std::make_unique<Interruption>(std::chrono::hours(24), std::nullopt) : nullptr;
+  if (engine == "local") {
+    return std::make_unique<Interruption>(std::chrono::hours(24), std::nullopt);
+  }
+  let_signals_go();  // programs of other engines would inherit that they are held
+  return nullptr;
 }
 
 int hand_over(const FarmPlan& plan, const std::vector<std::size_t>& chunks, const FarmArguments& arguments,
@@ -81,6 +90,11 @@ int hand_over(const FarmPlan& plan, const std::vector<std::size_t>& chunks, cons
   }
   std::fflush(nullptr);
   const int state = std::system(command.c_str());  // NOLINT: the command of the shell that was printed
+  const int failed = state == 0 ? exit_done : farm_status(plan).exit_code();
+  const bool was_found = state == 0 || (WIFEXITED(state) && WEXITSTATUS(state) != 126 && WEXITSTATUS(state) != 127);
+  if (submit_waits(plan) && was_found && (state == 0 || failed != 0)) {
+    return tell_end(plan, failed);
+  }
   if (state != 0) {
     throw Error(ErrorKind::runtime, plan.engine, "did not take the farm: " + command, "see what it said above");
   }
@@ -110,10 +124,11 @@ int run_farm(FarmArguments& arguments) {
 }
 
 int run_status(const FarmArguments& arguments) {
+  let_signals_go();
   const FarmPlan plan = read_farm(arguments.folder);
   const FarmStatus status = farm_status(plan);
   arguments.json.print(farm_status_text(plan, status), [&] { return farm_status_json(plan, status); });
-  return exit_done;
+  return status.exit_code();
 }
 
 int run_retry(const FarmArguments& arguments) {
@@ -132,6 +147,11 @@ int run_retry(const FarmArguments& arguments) {
     if (task.state == TaskState::running && (i >= plan.chunks.size() || !can_retry_beside_running(plan))) {
       throw Error(ErrorKind::usage, arguments.folder,
                   "task " + task.name + " is running, and what follows waits for it", "wait until it ends, or end it");
+    }
+    if (task.state == TaskState::unknown) {
+      throw Error(ErrorKind::usage, arguments.folder,
+                  "whether task " + task.name + " still runs cannot be told, since nothing can be locked there",
+                  "end it where it runs, and call 'gazetrace farm' again, which keeps finished work");
     }
   }
   return hand_over(plan, chunks_to_retry(status), arguments, interruption.get());
@@ -204,7 +224,7 @@ Command add_farm_command(CLI::App& app, const Invocation& /*invocation*/) {
   const auto run = [arguments, status, retry] {
     return status->parsed() ? run_status(*arguments) : retry->parsed() ? run_retry(*arguments) : run_farm(*arguments);
   };
-  return {run, {}};
+  return {run, {}, true};
 }
 
 }  // namespace gazetrace

@@ -25,7 +25,7 @@ int run_man(const ManArguments& arguments, const CommandWords& program) {
   for (const CommandWords* command : all_commands(program)) {
     if (!arguments.folder.empty()) {
       const std::string path = (std::filesystem::path(arguments.folder) / man_page_name(*command)).string();
-      check_output_file(path, true);
+      check_outputs({path}, {}, true);
       write_text_atomically(path, man_page(*command));
       continue;
     }

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -58,6 +59,14 @@ MergeResult run_merge_parts(const MergeArguments& arguments) {
   }
   const std::string& directory = arguments.inputs.front();
   const std::vector<RunPart> parts = read_run_parts(directory);
+  std::vector<std::string> inputs;
+  for (const RunPart& part : parts) {
+    inputs.insert(inputs.end(), {part.timing_path, part.record_path});
+    for (const auto& [name, file] : part.record.files) {
+      inputs.push_back((std::filesystem::path(part.record_path).parent_path() / name).string());
+    }
+  }
+  arguments.json.check({}, inputs);
   MergeOptions options{arguments.allow_missing, arguments.overwrite, arguments.trust_files, arguments.threads};
   if (!options.trust_files && !options.allow_missing) {
     check_files(parts, arguments);

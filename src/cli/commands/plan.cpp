@@ -164,12 +164,12 @@ int run_plan(const PlanArguments& arguments) {
   resolving.scope = ResolveScope::plan;
   const ResolvedJob resolved = resolve(arguments.job, resolving);
   const JobSettings& job = resolved.job.settings;
+  arguments.json.check({arguments.save_camera}, job_files(job));
   if (!arguments.save_camera.empty()) {
     std::vector<FramePose> frames;
     for (const FrameRequest& request : resolved.plan.frames) {
       frames.push_back({request.frame, request.t_video_ns, request.camera});
     }
-    check_output_file(arguments.save_camera, arguments.job.settings.overwrite);
     write_camera_path(frames, job.camera_read.rotation_order, arguments.save_camera);
   }
   print_warnings(resolved.warnings);

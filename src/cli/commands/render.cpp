@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,7 @@
 #include "cli/run_events.hpp"
 #include "cli/summary.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/farm.hpp"
 #include "gazetrace/run_job.hpp"
 
 namespace gazetrace {
@@ -98,11 +100,11 @@ void say_interrupted(const ResolvedJob& resolved, const SequenceResult& result, 
 int run_render(const RenderArguments& arguments, const Invocation& invocation, RunEvents& events) {
   const JobSettings& job = arguments.job.settings;
   const bool quiet = is_quiet(job, events);
+  Interruption interruption(std::chrono::nanoseconds(job.grace.ns),
+                            job.max_time ? std::optional(std::chrono::nanoseconds(job.max_time->ns)) : std::nullopt);
   check_asked_for_something(job);
   check_job(arguments.job);
   arguments.json.check();
-  Interruption interruption(std::chrono::nanoseconds(job.grace.ns),
-                            job.max_time ? std::optional(std::chrono::nanoseconds(job.max_time->ns)) : std::nullopt);
   auto loading = std::make_unique<LoadProgress>(progress_style(job.progress, quiet));
   std::optional<Progress> progress;
   std::string pixels;  // the reports on `only-pixel`
@@ -110,6 +112,16 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation, R
   observer.loading = [&](std::size_t done, std::size_t total) { loading->parts_done(done, total); };
   observer.building_tree = [&] { loading->building_tree(); };
   observer.begins = [&](const StartedRun& run) {
+    std::vector<std::string> others = run.files;
+    for (const auto& [path, digest] : run.resolved.input_digests) {
+      others.push_back(path);
+    }
+    arguments.json.check({}, std::move(others));
+    if (const std::filesystem::path name = run.resolved.pipeline.output.run_name; job.chunk && !name.empty()) {
+      const JobSettings& settings = run.resolved.job.settings;
+      check_farm_denoiser(folder_of_run(name.string()), name.filename().string(), settings.filter,
+                          settings.filter == "oidn" ? denoiser_description() : std::string());
+    }
     loading.reset();
     interruption.frames_begin();
     tell_beginning(run, events);
@@ -177,7 +189,7 @@ Command add_render_command(CLI::App& app, const Invocation& invocation) {
       throw;
     }
   };
-  return {run, [arguments](const std::string& path) { read_job_config(arguments->job, "render", path); }};
+  return {run, [arguments](const std::string& path) { read_job_config(arguments->job, "render", path); }, true};
 }
 
 }  // namespace gazetrace

@@ -12,6 +12,7 @@
 #include "cli/exit_codes.hpp"
 #include "cli/json_output.hpp"
 #include "gazetrace/build_info.hpp"
+#include "gazetrace/input_digest.hpp"
 #include "gazetrace/resolve.hpp"
 #include "gazetrace/scene.hpp"
 #include "gazetrace/scene_contents.hpp"
@@ -237,6 +238,9 @@ std::string report_json(const SceneReport& report) {
 }
 
 int run_scene(const SceneArguments& arguments) {
+  if (arguments.json.wanted()) {
+    arguments.json.check({}, scene_files(arguments.path, arguments.job.settings.allow_outside));
+  }
   SceneReport report;
   SceneReadOptions options = scene_read_options(arguments.job.settings);
   options.threads = arguments.threads;

@@ -118,7 +118,7 @@ int run_sweep_command(const SweepArguments& arguments) {
       std::chrono::nanoseconds(arguments.grace.ns),
       arguments.max_time ? std::optional(std::chrono::nanoseconds(arguments.max_time->ns)) : std::nullopt);
   const SweepPlan plan = load_plan(arguments);
-  arguments.json.check();
+  arguments.json.check({}, plan.files);
   if (arguments.dry_run && arguments.chunk) {
     arguments.json.print(shares_text(plan, arguments.chunk->count),
                          [&] { return shares_json(plan, arguments.chunk->count); });
@@ -158,8 +158,9 @@ int run_sweep_command(const SweepArguments& arguments) {
 }
 
 int run_sweep_merge(const SweepArguments& arguments) {
+  let_signals_go();
   const SweepPlan plan = load_plan(arguments);
-  arguments.merge_json.check();
+  arguments.merge_json.check({}, plan.files);
   write_and_print(plan, merge_sweep(plan, arguments.folders, warning_observer()), arguments.merge_json);
   return exit_done;
 }
@@ -215,7 +216,8 @@ Command add_sweep_command(CLI::App& app, const Invocation& /*invocation*/) {
   return {[arguments, options, merge_options, merge] {
             return merge->parsed() ? run_sweep_merge(*arguments) : run_sweep_command(*arguments);
           },
-          {}};
+          {},
+          true};
 }
 
 }  // namespace gazetrace

@@ -195,8 +195,7 @@ int run_video(VideoArguments& arguments) {
   video.fps = thinned(frame_rate(job, inputs), inputs.frames);
   video.threads = job.shared.threads;
   check_video_settings(arguments.output, video);
-  check_output_file(arguments.output, arguments.overwrite);
-  arguments.json.check();
+  arguments.json.check({arguments.output}, compared_files(job, inputs));
   FrameMaker maker(arguments, inputs);
   DisplayImage image = maker.make(inputs.frames.front());
   video.color = arguments.color.empty() ? video_color_of_view(maker.view()) : video_color_by_name(arguments.color);

@@ -15,6 +15,6 @@ std::string nothing(const FarmPlan& /*plan*/) {
 
 }  // namespace
 
-const FarmEngine kFarmEngine_local{no_files, nothing, nothing, "", false};
+const FarmEngine kFarmEngine_local{no_files, nothing, nothing, "", false, true};
 
 }  // namespace gazetrace

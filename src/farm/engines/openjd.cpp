@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Open Job Description: a template of the specification 2023-09 with the extension TASK_CHUNKING, as JSON.
 // https://github.com/OpenJobDescription/openjd-specifications/wiki/2023-09-Template-Schemas
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -78,12 +80,17 @@ std::string submit(const FarmPlan& plan) {
          shell_word(tasks_after_chunks(plan).back()) + " --run-dependencies";
 }
 
-std::string again(const FarmPlan& /*plan*/) {
-  return {};
+// An engine that ends a job at the first task that fails would try nothing again.
+std::string again(const FarmPlan& plan) {
+  return fmt::format(R"(  tries=${{GAZETRACE_TRIES:-0}}
+  export GAZETRACE_TRIES=$((tries + 1))
+  [ "$tries" -lt {} ] && exec sh "$0" "$1"
+)",
+                     plan.retries);
 }
 
 }  // namespace
 
-const FarmEngine kFarmEngine_openjd{files, submit, again, " --progress openjd", false};
+const FarmEngine kFarmEngine_openjd{files, submit, again, " --progress openjd", false, true};
 
 }  // namespace gazetrace

@@ -132,6 +132,6 @@ std::string again(const FarmPlan& plan) {
 
 }  // namespace
 
-const FarmEngine kFarmEngine_slurm{files, submit, again, " --progress never", true};
+const FarmEngine kFarmEngine_slurm{files, submit, again, " --progress never", true, false};
 
 }  // namespace gazetrace

@@ -32,15 +32,11 @@ void write_tables(const AoisArguments& arguments, const AoiAnalysis& analysis) {
                                                        {"fixations.tsv", aoi_fixations_as_tsv(analysis)},
                                                        {"transitions.tsv", aoi_transitions_as_tsv(analysis)},
                                                        {"aois.json", aois_as_json(analysis)}};
-  std::error_code problem;
-  std::filesystem::create_directories(folder, problem);
-  if (problem) {
-    throw Error(ErrorKind::usage, "`tables`",
-                "cannot make the folder '" + arguments.tables + "': " + problem.message());
-  }
+  std::vector<std::string> names;
   for (const auto& [name, text] : files) {
-    check_output_file((folder / name).string(), arguments.job.settings.overwrite);
+    names.push_back((folder / name).string());
   }
+  arguments.json.check(names, job_files(arguments.job.settings));
   for (const auto& [name, text] : files) {
     write_text_atomically((folder / name).string(), text);
   }
@@ -67,9 +63,8 @@ int run_aois(const AoisArguments& arguments) {
     throw Error(ErrorKind::usage, "", "no areas were given",
                 "name a file of areas with `aois`, or one for the outlines of objects with `outlines`");
   }
+  arguments.json.check({arguments.outlines}, job_files(arguments.job.settings));
   if (!arguments.outlines.empty()) {
-    check_output_file(arguments.outlines, arguments.job.settings.overwrite);
-    arguments.json.check();
     write_outlines(arguments);
   }
   if (arguments.areas.empty()) {

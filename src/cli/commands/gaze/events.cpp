@@ -26,7 +26,6 @@ struct EventsArguments {
   std::optional<GazeDevice> device;
   bool binocular = false;
   std::string output;
-  bool overwrite = false;
   bool keep_ids = false;
   JsonOutput json;
 };
@@ -64,9 +63,7 @@ std::string summary(const EyeEvents& events, const GazeLog& log) {
 }
 
 int run_events(const EventsArguments& arguments) {
-  if (!arguments.output.empty()) {
-    check_output_file(arguments.output, arguments.overwrite);
-  }
+  arguments.json.check({arguments.output});
   GazeLog log = read_gaze_file(arguments.gaze, arguments.screen);
   complete_recording_geometry(log, arguments.screen);
   print_warnings(log.warnings);
@@ -128,10 +125,9 @@ Command add_gaze_events_command(CLI::App& app, const Invocation& /*invocation*/)
   app.add_option("log", arguments->gaze.path, "Gaze log")->required()->type_name("FILE");
   app.add_option("-o,--output", arguments->output, "Events, .tsv or .json; default: as TSV to stdout")
       ->type_name("FILE");
-  app.add_flag("--overwrite", arguments->overwrite, "Replaces the file when it is there");
   app.add_flag("--keep-ids", arguments->keep_ids,
                "Times of day of the log stay; otherwise such times count from its first sample");
-  add_json_option(app, arguments->json, arguments->overwrite);
+  add_json_option(app, arguments->json);
   return {[arguments, options] { return run_events(*arguments); }, {}};
 }
 

@@ -78,10 +78,7 @@ nlohmann::ordered_json decisions_as_json(const std::vector<GazeFact>& facts) {
 
 int run_import(const ImportArguments& arguments) {
   const bool is_bids = is_bids_file_name(arguments.output);
-  if (!is_bids) {
-    check_output_file(arguments.output, arguments.overwrite);
-  }
-  arguments.json.check();
+  arguments.json.check({is_bids ? std::string() : arguments.output});
   std::vector<std::string> reports;  // of the steps of processing
   const auto tell = [&](const GazeLog& log, const std::vector<std::string>& files) {
     std::string text = decisions_in_words(log.facts);
@@ -116,7 +113,7 @@ int run_import(const ImportArguments& arguments) {
     tell(log, {arguments.output});
     return exit_done;
   }
-  check_output_file(arguments.output, true);  // makes the folder, which is held while it is looked at and written
+  check_outputs({arguments.output}, {}, true);  // makes the folder, which is held while it is looked at and written
   std::vector<std::string> written;
   std::vector<BidsLeftover> leftovers;
   write_gaze_bids(log, arguments.output, [&](const std::vector<std::string>& files) {
@@ -126,9 +123,7 @@ int run_import(const ImportArguments& arguments) {
     for (const BidsLeftover& leftover : leftovers) {
       removed.push_back(leftover.path);
     }
-    for (const std::string& path : written) {
-      check_output_file(path, arguments.overwrite);
-    }
+    arguments.json.check(written);
     return removed;
   });
   if (!log.head.empty()) {

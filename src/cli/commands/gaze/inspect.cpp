@@ -18,7 +18,6 @@ struct InspectArguments {
   GazeFileSettings gaze;
   ScreenSettings screen;
   std::string save_columns;
-  bool overwrite = false;
   bool keep_ids = false;
   JsonOutput json;
 };
@@ -32,9 +31,7 @@ void cut_rows(RawGaze& raw, const GazeTrial& trial) {
 }
 
 int run_inspect(const InspectArguments& arguments) {
-  if (!arguments.save_columns.empty()) {
-    check_output_file(arguments.save_columns, arguments.overwrite);
-  }
+  arguments.json.check({arguments.save_columns});
   GazeUnderInspection gaze = load_for_inspection(arguments.gaze.path, read_options(arguments.gaze, arguments.screen));
   name_trials(gaze.log, arguments.gaze.trial_rules);
   if (!arguments.gaze.trial.empty()) {
@@ -65,7 +62,6 @@ Command add_gaze_inspect_command(CLI::App& app, const Invocation& /*invocation*/
   app.add_option("log", arguments->gaze.path, "Gaze log")->required()->type_name("FILE");
   app.add_option("--save-columns", arguments->save_columns, "Writes what was declared of the columns as a column map")
       ->type_name("MAP.json");
-  app.add_flag("--overwrite", arguments->overwrite, "Replaces MAP.json when it is there");
   app.add_flag("--keep-ids", arguments->keep_ids,
                "Also shows what can identify a person or a session, such as times of day; left out otherwise");
   add_json_option(app, arguments->json);

@@ -25,7 +25,6 @@ struct MeasureArguments {
   GazeMeasureSettings measure;
   std::vector<std::string> steps;
   std::string folder;
-  bool overwrite = false;
   JsonOutput json;
 };
 
@@ -50,15 +49,11 @@ int run_gaze_measure(const MeasureArguments& arguments) {
   print_warnings(measured.warnings);
   if (!arguments.folder.empty()) {
     const std::filesystem::path folder(arguments.folder);
-    std::error_code problem;
-    std::filesystem::create_directories(folder, problem);
-    if (problem) {
-      throw Error(ErrorKind::usage, "`tables`",
-                  "cannot make the folder '" + arguments.folder + "': " + problem.message());
-    }
+    std::vector<std::string> names;
     for (const GazeTable& table : measured.tables) {
-      check_output_file((folder / table.name).string(), arguments.overwrite);
+      names.push_back((folder / table.name).string());
     }
+    arguments.json.check(names);
     for (const GazeTable& table : measured.tables) {
       write_text_atomically((folder / table.name).string(), table.text);
     }
@@ -85,7 +80,6 @@ Command add_gaze_measure_command(CLI::App& app, const Invocation& /*invocation*/
   const auto options = std::make_shared<CommandOptions<MeasureArguments>>(std::move(schema));
   options->bind(app, *arguments);
   app.add_option("log", arguments->gaze.path, "Gaze log")->required()->type_name("FILE");
-  add_json_option(app, arguments->json, arguments->overwrite);
   app.add_option("--tables", arguments->folder,
                  "Writes as .tsv the events, those of each eye, the samples and the vergence of the eyes")
       ->type_name("DIR");
@@ -94,9 +88,9 @@ Command add_gaze_measure_command(CLI::App& app, const Invocation& /*invocation*/
          "How far the pupils are apart, for the vergence of gaze on a screen and for where lines of sight meet; "
          "default: what the log says of the places of the eyes")
       ->type_name("MM");
-  app.add_flag("--overwrite", arguments->overwrite, "Replaces files that are there");
   app.add_flag("--keep-ids", arguments->measure.keep_ids,
                "Keeps what can identify a person or a session, such as times of day");
+  add_json_option(app, arguments->json);
   return {[arguments, options] { return run_gaze_measure(*arguments); }, {}};
 }
 

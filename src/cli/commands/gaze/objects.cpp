@@ -49,12 +49,7 @@ void write_heat(const ObjectsArguments& arguments, const SceneHeat& heat) {
 }
 
 int run_objects(ObjectsArguments& arguments) {
-  for (const std::string& output : {arguments.table, arguments.heat_map}) {
-    if (!output.empty()) {
-      check_output_file(output, arguments.job.settings.overwrite);
-    }
-  }
-  arguments.json.check();
+  arguments.json.check({arguments.table, arguments.heat_map}, job_files(arguments.job.settings));
   if (!arguments.heat_map.empty() && !arguments.heat_map.ends_with(".png") && !arguments.heat_map.ends_with(".csv")) {
     throw Error(ErrorKind::usage, "`heat-map`", "is written as .png or .csv, not as '" + arguments.heat_map + "'");
   }

@@ -22,15 +22,11 @@ struct SynthArguments {
   DurationNs fixation{300'000'000};
   bool head = false;
   std::string output, truth;
-  bool overwrite = false;
   JsonOutput json;
 };
 
 int run_synth(const SynthArguments& arguments) {
-  check_output_file(arguments.output, arguments.overwrite);
-  if (!arguments.truth.empty()) {
-    check_output_file(arguments.truth, arguments.overwrite);
-  }
+  arguments.json.check({arguments.output, arguments.truth});
   SynthSettings settings = arguments.synth;
   settings.duration_ns = arguments.duration.ns;
   settings.fixation_s = static_cast<double>(arguments.fixation.ns) * 1e-9;
@@ -82,8 +78,7 @@ Command add_gaze_synth_command(CLI::App& app, const Invocation& /*invocation*/) 
   app.add_option("-o,--output", arguments->output, "gazetrace CSV")->required()->type_name("OUT.csv");
   app.add_option("--truth", arguments->truth, "What really happened, as 'gaze events' writes it: .tsv or .json")
       ->type_name("FILE");
-  app.add_flag("--overwrite", arguments->overwrite, "Replaces files that are there");
-  add_json_option(app, arguments->json, arguments->overwrite);
+  add_json_option(app, arguments->json);
   return {[arguments, options] { return run_synth(*arguments); }, {}};
 }
 
