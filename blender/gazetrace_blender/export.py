@@ -10,6 +10,7 @@ import bpy
 from .camera import Projection
 from .frames import FrameRange
 from .glb import Glb
+from .lights import add_area_lights, lost_of_lights
 from .motion import animate, from_the_roots, scale_times, world_matrices
 from .refusal import Refusal
 
@@ -48,6 +49,7 @@ def export_scene(
             run_exporter(path)
     glb = Glb(path)
     scale_times(glb, scene.render.fps_base)
+    add_area_lights(glb, scene, matrices)
     animate(glb, matrices, frames)
     name = place_camera(glb.document, camera.name, projection)
     glb.write(path)
@@ -80,12 +82,10 @@ def place_camera(document: dict, object_name: str, projection: Projection) -> st
 
 def left_out(scene: bpy.types.Scene) -> list[str]:
     """What of the scene glTF does not carry, in a sentence each."""
-    sentences = []
+    sentences = lost_of_lights(scene)
     for item in scene.objects:
         if item.hide_render:
             continue
-        if item.type == "LIGHT" and item.data.type == "AREA":
-            sentences.append(f"Area light '{item.name}' is left out: glTF has none. A mesh that emits light takes its place.")
         if item.type == "VOLUME" or item.particle_systems:
             sentences.append(f"Volumes and particles of '{item.name}' are left out: glTF has none.")
         keys = getattr(item.data, "shape_keys", None)
