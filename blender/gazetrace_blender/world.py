@@ -9,8 +9,8 @@ import bpy
 
 from .toml import Value
 
-# A pixel is a third of the sun's width.
-BAKED_SIZE_PX, BAKED_SAMPLES = (2048, 1024), 64
+# A pixel is a third of the sun's width. Only at the sun's edge, and at others, more than the fewest samples are taken.
+BAKED_SIZE_PX, FEWEST_SAMPLES, MOST_SAMPLES = (2048, 1024), 4, 64
 
 # At a direction (x, y, z) Blender's picture shows the column 1/2 - atan2(y, x) / turn, gazetrace's 1/2 + atan2(x, y) / turn.
 BLENDER_TURN_DEG = 90.0
@@ -77,8 +77,9 @@ def bake(scene: bpy.types.Scene, path: Path) -> None:
         render.filepath = str(path)
         render.use_file_extension = False
         render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
-        baking.cycles.samples, baking.cycles.pixel_filter_type = BAKED_SAMPLES, "BOX"
-        baking.cycles.use_adaptive_sampling = baking.cycles.use_denoising = False
+        cycles = baking.cycles
+        cycles.samples, cycles.adaptive_min_samples, cycles.use_adaptive_sampling = MOST_SAMPLES, FEWEST_SAMPLES, True
+        cycles.pixel_filter_type, cycles.use_denoising = "BOX", False
         bpy.ops.render.render(write_still=True, scene=baking.name)
     finally:
         bpy.data.scenes.remove(baking)
