@@ -9,7 +9,7 @@ from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
 from .glb import Glb
-from .motion import SHOWN, TO_Y_UP
+from .motion import TO_Y_UP
 
 # Of a disc or an ellipse; the polygon has the area of what it stands for.
 CORNERS = 64
@@ -20,11 +20,11 @@ def area_lights(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     return [item for item in scene.objects if item.type == "LIGHT" and item.data.type == "AREA" and not item.hide_render]
 
 
-def add_area_lights(glb: Glb, scene: bpy.types.Scene, matrices: dict[str, np.ndarray]) -> None:
+def add_area_lights(glb: Glb, scene: bpy.types.Scene, matrices: dict[str, np.ndarray], shown_index: int) -> None:
     """Appends a shining mesh for each, whose node moves as its light: it gets the light's entry of `matrices`."""
     for item in area_lights(scene):
         node_name = f"{item.name} (area light)"
-        shown = TO_Y_UP @ matrices[item.name][SHOWN]
+        shown = TO_Y_UP @ matrices[item.name][shown_index]
         triangles = triangles_of(item.data)
         radiance = radiance_of(item.data, area_m2(triangles @ shown[:3, :3].T))
         if max(radiance) > 0:
@@ -65,15 +65,17 @@ def radiance_of(light: bpy.types.AreaLight, area: float) -> list[float]:
 
 
 def append(glb: Glb, name: str, triangles: np.ndarray, matrix: np.ndarray, radiance: list[float]) -> None:
-    """A black surface that shines on its front, at the root of the scene."""
+    """A surface that shines on its front, and that other light passes as if it were not there, at the root of the scene."""
     document = glb.document
     peak = max(radiance)
     material = {
         "name": name,
-        "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0, "roughnessFactor": 1},
+        "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0},
         "emissiveFactor": [part / peak for part in radiance],
         "extensions": {
             "KHR_materials_emissive_strength": {"emissiveStrength": peak},
+            "KHR_materials_transmission": {"transmissionFactor": 1},
+            "KHR_materials_ior": {"ior": 1},
             "KHR_materials_specular": {"specularFactor": 0},
         },
     }
@@ -108,6 +110,8 @@ def lost_of_lights(scene: bpy.types.Scene) -> list[str]:
 
 def is_in_view(scene: bpy.types.Scene, item: bpy.types.Object) -> bool:
     """Whether the camera sees a corner of the front of an area light in the current frame."""
+    if scene.camera is None:
+        return False
     to_camera = scene.camera.matrix_world.translation - item.matrix_world.translation
     if to_camera.dot(item.matrix_world.to_3x3() @ Vector((0, 0, -1))) <= 0:
         return False

@@ -29,7 +29,7 @@ def world_options(scene: bpy.types.Scene, job_folder: Path, side_folder: Path) -
     except NotPlain:
         picture = side_folder / "world.exr"
         bake(scene, picture)
-        return {"env": os.path.relpath(picture, job_folder), "env-rotation": BLENDER_TURN_DEG}
+        return {"env": os.path.relpath(picture, job_folder)}
 
 
 def plain_options(world: bpy.types.World, job_folder: Path, side_folder: Path) -> dict[str, Value]:
@@ -65,7 +65,7 @@ def bake(scene: bpy.types.Scene, path: Path) -> None:
     panorama = camera if hasattr(camera, "panorama_type") else camera.cycles
     panorama.panorama_type = "EQUIRECTANGULAR"
     eye = bpy.data.objects.new("gazetrace world", camera)
-    eye.rotation_euler = (math.pi / 2, 0, -math.pi / 2)  # towards +x, which the middle of Blender's pictures shows
+    eye.rotation_euler = (math.pi / 2, 0, 0)  # towards +y, which the middle of gazetrace's environments shows
     baking = bpy.data.scenes.new("gazetrace world")
     try:
         baking.world, baking.camera = scene.world, eye

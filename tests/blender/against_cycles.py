@@ -27,6 +27,8 @@ import scenes  # noqa: E402
 SIZE_PX = (160, 90)
 SAMPLES = 64
 BLOCK_PX = 10
+# Enough that nothing is left of the light; the two count them otherwise.
+BOUNCES = 24
 
 
 def matte(name: str, colour: tuple) -> bpy.types.Material:
@@ -105,7 +107,7 @@ def room() -> None:
     disc = panel("disc", (1.9, 0.5, 1.2), 20, shape="DISK", size=0.4, color=(1, 0.5, 0.2))
     disc.rotation_euler = (0, math.pi / 2, 0)
     camera((1.7, -1.2, 1.3), (math.radians(80), 0, math.radians(50)), 24)
-    further('sampling = "uniform"\nfilter = "none"\ndiffuse = "lambert"\nbounces = 8\n')
+    further(f'sampling = "uniform"\nfilter = "none"\ndiffuse = "lambert"\nbounces = {BOUNCES}\n')
 
 
 def shot() -> None:
@@ -136,7 +138,7 @@ def shot() -> None:
     render = scene.render
     render.use_border = render.use_crop_to_border = True
     render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.1, 0.85, 0.05, 0.9
-    further('sampling = "uniform"\nfilter = "none"\ndiffuse = "lambert"\nbounces = 8\n')
+    further(f'sampling = "uniform"\nfilter = "none"\ndiffuse = "lambert"\nbounces = {BOUNCES}\n')
 
 
 SCENES = {"cube": cube, "room": room, "shot": shot}
@@ -153,7 +155,7 @@ def by_cycles(scene: bpy.types.Scene, folder: Path, seed: int) -> np.ndarray:
     scene.render.engine = "CYCLES"
     scene.cycles.samples, scene.cycles.seed = SAMPLES, seed
     scene.cycles.use_denoising = scene.cycles.use_adaptive_sampling = False
-    scene.cycles.max_bounces = scene.cycles.diffuse_bounces = 8
+    scene.cycles.max_bounces = scene.cycles.diffuse_bounces = BOUNCES
     scene.cycles.sample_clamp_direct = scene.cycles.sample_clamp_indirect = 0
     scene.render.image_settings.file_format = "OPEN_EXR"
     pictures = []

@@ -75,9 +75,11 @@ class Blender(harness.CliTest):
                 self.assertEqual([result["frames"] for result in results], [1, 1, 10])
                 for result in results:
                     print(host, result)
+                    # The cube's gloss is Blender's own, and glTF's is another: 1.2 % of the mean. All else is matte.
+                    model = 0.02 if result["scene"] == "cube" else 0
                     for ratio, error in zip(result["ratio"], result["error_of_ratio"]):
                         self.assertLess(error, MOST_ERROR, result)
-                        self.assertLess(abs(ratio - 1), 4 * error, result)
+                        self.assertLess(abs(ratio - 1), 4 * error + model, result)
 
     def test_the_add_on(self):
         for host in HOSTS:
