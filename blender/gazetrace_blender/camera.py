@@ -18,18 +18,21 @@ class Projection:
     is_perspective: bool
     yfov_rad: float
     ymag_m: float
+    middle_m: tuple[float, float]  # of the picture, from the view axis; one metre before a perspective camera
+    aspect: float
     near_m: float
     far_m: float
 
     def gltf(self) -> dict:
-        """The camera as an object of glTF 2.0, without its aspect: pixels are square, and the frame has a shape."""
+        """The camera as an object of glTF 2.0. A shifted lens, which glTF has not, stands in its extras."""
         if self.is_perspective:
-            return {
-                "type": "perspective",
-                "perspective": {"yfov": self.yfov_rad, "znear": self.near_m, "zfar": self.far_m},
-            }
-        orthographic = {"xmag": self.ymag_m, "ymag": self.ymag_m, "znear": self.near_m, "zfar": self.far_m}
-        return {"type": "orthographic", "orthographic": orthographic}
+            kind, lens = "perspective", {"yfov": self.yfov_rad, "aspectRatio": self.aspect}
+        else:
+            kind, lens = "orthographic", {"xmag": self.ymag_m * self.aspect, "ymag": self.ymag_m}
+        camera = {"type": kind, kind: {**lens, "znear": self.near_m, "zfar": self.far_m}}
+        if any(self.middle_m):
+            camera["extras"] = {"gazetrace": {"middle_m": self.middle_m}}
+        return camera
 
 
 def picture_size(scene: bpy.types.Scene) -> tuple[int, int]:
@@ -49,22 +52,21 @@ def picture_size(scene: bpy.types.Scene) -> tuple[int, int]:
 def projection(camera: bpy.types.Camera, width_px: int, height_px: int) -> Projection:
     """The projection of a camera in a picture of this size, by the rules of Blender's sensor fit.
 
-    The sensor fits the width, the height, or the longer of both (Auto, which measures it by the sensor's width). A shifted
-    lens is refused: gazetrace's view is centred, as glTF's is.
+    The sensor fits the width, the height, or the longer of both (Auto, which measures it by the sensor's width). Shifts
+    of the lens are parts of what it fits, for both axes.
     """
-    if camera.shift_x or camera.shift_y:
-        raise Refusal(
-            f"the lens of '{camera.name}' is shifted, and gazetrace's is centred",
-            "set Shift X and Y to 0 and turn the camera, or render a larger picture and crop it",
-        )
     fits_width = camera.sensor_fit == "HORIZONTAL" or (camera.sensor_fit == "AUTO" and width_px >= height_px)
     sensor_mm = camera.sensor_height if camera.sensor_fit == "VERTICAL" else camera.sensor_width
     fitted_px = width_px if fits_width else height_px
     height_per_fitted = height_px / fitted_px
+    is_perspective = camera.type == "PERSP"
+    fitted_m = sensor_mm / camera.lens if is_perspective else camera.ortho_scale
     return Projection(
-        is_perspective=camera.type == "PERSP",
+        is_perspective=is_perspective,
         yfov_rad=2 * math.atan(sensor_mm / (2 * camera.lens) * height_per_fitted),
         ymag_m=camera.ortho_scale / 2 * height_per_fitted,
+        middle_m=(camera.shift_x * fitted_m, camera.shift_y * fitted_m),
+        aspect=width_px / height_px,
         near_m=camera.clip_start,
         far_m=camera.clip_end,
     )

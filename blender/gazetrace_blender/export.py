@@ -10,6 +10,7 @@ import bpy
 from .camera import Projection
 from .frames import FrameRange
 from .glb import Glb
+from .lights import add_area_lights, lost_of_lights
 from .motion import animate, from_the_roots, scale_times, world_matrices
 from .refusal import Refusal
 
@@ -36,22 +37,38 @@ EXPORTER_OPTIONS = {
     "export_import_convert_lighting_mode": "COMPAT",
 }
 
+# Kinds of objects that the exporter passes over without a word.
+LEFT_OUT = {"CURVES": "curves of hair", "POINTCLOUD": "clouds of points", "GREASEPENCIL": "grease pencil", "GPENCIL": "grease pencil"}
+# Modifiers by which a mesh may change from frame to frame.
+CHANGING = ("MESH_SEQUENCE_CACHE", "MESH_CACHE", "CLOTH", "SOFT_BODY", "OCEAN", "WAVE", "FLUID", "DYNAMIC_PAINT", "EXPLODE")
+# Of nodes that make a colour or a surface, those that are carried over.
+COMPUTED = ("TEX_", "BSDF_", "SUBSURFACE", "VOLUME", "PRINCIPLED_VOLUME", "VALTORGB", "BUMP", "SCRIPT")
+CARRIED = ("TEX_IMAGE", "TEX_COORD", "BSDF_PRINCIPLED", "BSDF_TRANSPARENT", "BSDF_DIFFUSE", "BSDF_GLOSSY")
+
 
 def export_scene(
     scene: bpy.types.Scene, frames: FrameRange, camera: bpy.types.Object, projection: Projection, path: Path
 ) -> str:
     """Writes the scene, and returns the name of the camera in the file."""
+    glb = export_moving(scene, frames, path)
+    name = "camera of the job"
+    place_camera(glb.document, camera.name, projection, name)
+    glb.write(path)
+    return name
+
+
+def export_moving(scene: bpy.types.Scene, frames: FrameRange, path: Path) -> Glb:
+    """The scene with area lights and everything that moves, which is still to be written; `path` is overwritten."""
     with frame_kept(scene):
         matrices = world_matrices(scene, frames.baked())
         scene.frame_set(frames.first)
         with time_for_exporter(scene, frames):
             run_exporter(path)
     glb = Glb(path)
-    scale_times(glb, scene.render.fps_base)
+    scale_times(glb, scene.render.fps_base, frames.seconds(frames.first) - float(frames.first / frames.fps))
+    add_area_lights(glb, scene, matrices, frames.shown)
     animate(glb, matrices, frames)
-    name = place_camera(glb.document, camera.name, projection)
-    glb.write(path)
-    return name
+    return glb
 
 
 def run_exporter(path: Path) -> None:
@@ -64,8 +81,8 @@ def run_exporter(path: Path) -> None:
     bpy.ops.export_scene.gltf(filepath=str(path), **options)
 
 
-def place_camera(document: dict, object_name: str, projection: Projection) -> str:
-    """Gives the scene's camera its projection, and returns the name by which gazetrace finds it."""
+def place_camera(document: dict, object_name: str, projection: Projection, name: str) -> None:
+    """Gives a camera its projection, and its node the name by which gazetrace finds it."""
     nodes = document.get("nodes", [])
     parents = {child: index for index, node in enumerate(nodes) for child in node.get("children", [])}
     for index in from_the_roots(nodes, parents):
@@ -73,25 +90,45 @@ def place_camera(document: dict, object_name: str, projection: Projection) -> st
         if "camera" in nodes[index] and owner.get("name") == object_name:
             document["cameras"].append({"name": object_name, **projection.gltf()})
             nodes[index]["camera"] = len(document["cameras"]) - 1
-            nodes[index]["name"] = "camera of the job"
-            return nodes[index]["name"]
+            nodes[index]["name"] = name
+            return
     raise Refusal(f"camera '{object_name}' was not exported", "let it be shown in renders")
 
 
 def left_out(scene: bpy.types.Scene) -> list[str]:
     """What of the scene glTF does not carry, in a sentence each."""
-    sentences = []
+    sentences = lost_of_lights(scene)
     for item in scene.objects:
         if item.hide_render:
             continue
-        if item.type == "LIGHT" and item.data.type == "AREA":
-            sentences.append(f"Area light '{item.name}' is left out: glTF has none. A mesh that emits light takes its place.")
         if item.type == "VOLUME" or item.particle_systems:
             sentences.append(f"Volumes and particles of '{item.name}' are left out: glTF has none.")
+        if item.type in LEFT_OUT:
+            sentences.append(f"'{item.name}' is left out: glTF has no {LEFT_OUT[item.type]}.")
+        changing = sorted({modifier.name for modifier in item.modifiers if modifier.type in CHANGING})
+        if changing:
+            sentences.append(f"The shape of '{item.name}' stays as in the first frame: {', '.join(changing)}.")
         keys = getattr(item.data, "shape_keys", None)
         if keys is not None and any(modifier.type != "ARMATURE" for modifier in item.modifiers):
             sentences.append(f"The shape keys of '{item.name}' stay at rest: its modifiers are applied.")
+    used = {slot.material for item in scene.objects if not item.hide_render for slot in item.material_slots if slot.material}
+    for material in sorted(used, key=lambda one: one.name):
+        lost = sorted({node.bl_label for node in lost_nodes(material)})
+        if lost:
+            sentences.append(f"Material '{material.name}' is without its {', '.join(lost)}: glTF has none.")
     return sentences
+
+
+def lost_nodes(material: bpy.types.Material) -> list[bpy.types.Node]:
+    """The nodes that shape what Cycles shows of a material, and that Blender's exporter does not carry over."""
+    if material.node_tree is None or not material.use_nodes:
+        return []
+    output = material.node_tree.get_output_node("CYCLES")
+    reached = [output] if output is not None else []
+    for node in reached:
+        feeding = [link.from_node for socket in node.inputs for link in socket.links]
+        reached.extend(other for other in feeding if other not in reached)
+    return [node for node in reached if node.type.startswith(COMPUTED) and node.type not in CARRIED]
 
 
 @contextmanager

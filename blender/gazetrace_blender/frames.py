@@ -34,6 +34,11 @@ class FrameRange:
         """The frames that become pictures."""
         return list(range(self.first, self.last + 1, self.step))
 
+    @property
+    def shown(self) -> int:
+        """Which of the baked frames the exported file shows at rest: the first one that is rendered."""
+        return self.baked().index(self.first)
+
     def seconds(self, frame: int) -> float:
         """The moment of a frame in the exported scene."""
         return float(frame / self.fps)

@@ -95,7 +95,7 @@ def settings_of_job(
     chosen = scene.gazetrace
     options: dict[str, Value] = {}
     options.update(frame_options(frames, chosen.gaze_delay, chosen.gaze_source == "LOG"))
-    options.update(world_options(scene.world, job_folder, side_folder))
+    options.update(world_options(scene, job_folder, side_folder))
     options.update(gaze_options(chosen, job_folder))
     options.update(screen_options(chosen, job_folder))
     for name in ("preset", "sampling", "density", "filter"):

@@ -19,8 +19,6 @@ from .glb import Glb
 TO_Y_UP = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], float)
 # A change of a local matrix that is less is the noise of single precision.
 STILL = 1e-6
-# The baked frame that the exported file shows: the first one that is rendered.
-SHOWN = 1
 
 
 def world_matrices(scene: bpy.types.Scene, frames: Iterable[int]) -> dict[str, np.ndarray]:
@@ -51,8 +49,8 @@ def animate(glb: Glb, matrices: Mapping[str, np.ndarray], frames: FrameRange) ->
             global_motion[index] = above @ rest
             continue
         motion = TO_Y_UP @ matrices[moved_here[index]]
-        as_exported = (above[min(SHOWN, len(above) - 1)]) @ rest
-        motion = motion @ closing(motion[SHOWN], as_exported)
+        as_exported = (above[min(frames.shown, len(above) - 1)]) @ rest
+        motion = motion @ closing(motion[frames.shown], as_exported)
         global_motion[index] = motion
         local = np.linalg.inv(above) @ motion
         if np.abs(local - local[0]).max() <= STILL * max(1.0, np.abs(local).max()):
@@ -69,11 +67,11 @@ def animate(glb: Glb, matrices: Mapping[str, np.ndarray], frames: FrameRange) ->
         document["animations"] = [{"name": "Blender", "channels": channels, "samplers": samplers}]
 
 
-def scale_times(glb: Glb, factor: float) -> None:
-    """Stretches the keys that the exporter wrote."""
+def scale_times(glb: Glb, factor: float, offset_s: float) -> None:
+    """Stretches and moves the keys that the exporter wrote."""
     inputs = {s["input"] for animation in glb.document.get("animations", []) for s in animation["samplers"]}
     for accessor in inputs:
-        glb.floats(accessor)[:] *= np.float32(factor)
+        glb.floats(accessor)[:] = glb.floats(accessor) * np.float32(factor) + np.float32(offset_s)
         for bound in ("min", "max"):
             glb.document["accessors"][accessor][bound] = [float(getattr(glb.floats(accessor), bound)())]
 

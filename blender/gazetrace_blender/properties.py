@@ -46,7 +46,7 @@ class GazetraceSettings(bpy.types.PropertyGroup):
             ("LOG", "Recording", "Where a recorded viewer looked, from the log of an eye tracker"),
             ("POINT", "Fixed place", "The viewer looks at one place of the screen"),
         ],
-        default="LOG",
+        default="NONE",
     )
     gaze_log: StringProperty(
         name="Gaze log",

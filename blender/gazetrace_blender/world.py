@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The light of the world: a colour, or an environment texture, as a Background node shows it."""
+"""The light of the world: a colour, or an environment texture, as a Background node shows it; all else is baked."""
 
 import math
 import os
@@ -7,19 +7,33 @@ from pathlib import Path
 
 import bpy
 
-from .refusal import Refusal
 from .toml import Value
 
-SIMPLER = "use a Background node with a colour or an Environment Texture"
+# A pixel is a third of the sun's width. Only at the sun's edge, and at others, more than the fewest samples are taken.
+BAKED_SIZE_PX, FEWEST_SAMPLES, MOST_SAMPLES = (2048, 1024), 4, 64
 
 # At a direction (x, y, z) Blender's picture shows the column 1/2 - atan2(y, x) / turn, gazetrace's 1/2 + atan2(x, y) / turn.
 BLENDER_TURN_DEG = 90.0
 
 
-def world_options(world: bpy.types.World | None, job_folder: Path, side_folder: Path) -> dict[str, Value]:
-    """The options of the environment; packed pictures are written into `side_folder`."""
-    if world is None:
+class NotPlain(Exception):
+    """A world that no option describes."""
+
+
+def world_options(scene: bpy.types.Scene, job_folder: Path, side_folder: Path) -> dict[str, Value]:
+    """The options of the environment. Pictures that have no file of their own are written into `side_folder`."""
+    if scene.world is None:
         return {"env": "none"}
+    try:
+        return plain_options(scene.world, job_folder, side_folder)
+    except NotPlain:
+        picture = side_folder / "world.exr"
+        bake(scene, picture)
+        return {"env": os.path.relpath(picture, job_folder)}
+
+
+def plain_options(world: bpy.types.World, job_folder: Path, side_folder: Path) -> dict[str, Value]:
+    """The options for a colour, or for an environment texture in a format that gazetrace reads, turned about z."""
     if not world.use_nodes:
         return constant(world.color, 1.0)
     output = world.node_tree.get_output_node("CYCLES")
@@ -33,16 +47,44 @@ def world_options(world: bpy.types.World | None, job_folder: Path, side_folder: 
     if not colour.is_linked:
         return constant(colour.default_value, strength)
     texture = source_node(colour, "TEX_ENVIRONMENT")
-    if texture.projection != "EQUIRECTANGULAR":
-        raise Refusal(f"the environment texture '{texture.name}' is a mirror ball", "use an equirectangular one")
-    if texture.image is None:
-        raise Refusal(f"the environment texture '{texture.name}' has no image", "open one")
+    if texture.projection != "EQUIRECTANGULAR" or texture.image is None:
+        raise NotPlain
     picture = picture_file(texture.image, side_folder)
     return {
         "env": os.path.relpath(picture, job_folder),
         "env-rotation": BLENDER_TURN_DEG + mapping_turn_deg(texture.inputs["Vector"]),
         "env-ev": math.log2(strength),
     }
+
+
+def bake(scene: bpy.types.Scene, path: Path) -> None:
+    """Cycles renders what is seen of the world all around, at the current frame."""
+    camera = bpy.data.cameras.new("gazetrace world")
+    camera.type = "PANO"
+    # Blender 5 has it as a setting of its own, older ones have it as one of Cycles.
+    panorama = camera if hasattr(camera, "panorama_type") else camera.cycles
+    panorama.panorama_type = "EQUIRECTANGULAR"
+    eye = bpy.data.objects.new("gazetrace world", camera)
+    eye.rotation_euler = (math.pi / 2, 0, 0)  # towards +y, which the middle of gazetrace's environments shows
+    baking = bpy.data.scenes.new("gazetrace world")
+    try:
+        baking.world, baking.camera = scene.world, eye
+        baking.collection.objects.link(eye)
+        baking.frame_set(scene.frame_current)
+        render = baking.render
+        render.engine = "CYCLES"
+        render.resolution_x, render.resolution_y, render.resolution_percentage = *BAKED_SIZE_PX, 100
+        render.filepath = str(path)
+        render.use_file_extension = False
+        render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
+        cycles = baking.cycles
+        cycles.samples, cycles.adaptive_min_samples, cycles.use_adaptive_sampling = MOST_SAMPLES, FEWEST_SAMPLES, True
+        cycles.pixel_filter_type, cycles.use_denoising = "BOX", False
+        bpy.ops.render.render(write_still=True, scene=baking.name)
+    finally:
+        bpy.data.scenes.remove(baking)
+        bpy.data.objects.remove(eye)
+        bpy.data.cameras.remove(camera)
 
 
 def constant(colour: bpy.types.bpy_prop_array, strength: float) -> dict[str, Value]:
@@ -57,14 +99,14 @@ def source_node(socket: bpy.types.NodeSocket, wanted: str) -> bpy.types.ShaderNo
     while node.type == "REROUTE" and node.inputs[0].is_linked:
         node = node.inputs[0].links[0].from_node
     if node.type != wanted:
-        raise Refusal(f"node '{node.name}' of the world has no counterpart in gazetrace", SIMPLER)
+        raise NotPlain
     return node
 
 
 def unlinked_value(socket: bpy.types.NodeSocket) -> float:
     """The number that stands in a socket."""
     if socket.is_linked:
-        raise Refusal(f"the world's {socket.name.lower()} is made by other nodes", "give it a number")
+        raise NotPlain
     return socket.default_value
 
 
@@ -82,7 +124,7 @@ def mapping_turn_deg(socket: bpy.types.NodeSocket) -> float:
         and tuple(scale.default_value) == (1, 1, 1)
     )
     if not turns_only:
-        raise Refusal(f"node '{mapping.name}' does more than turn the world about z", "rotate about z alone")
+        raise NotPlain
     turn = math.degrees(rotation.default_value[2])
     return -turn if mapping.vector_type == "TEXTURE" else turn
 
@@ -94,5 +136,5 @@ def picture_file(image: bpy.types.Image, side_folder: Path) -> Path:
         path = side_folder / (Path(image.filepath_raw).name or image.name)
         path.write_bytes(image.packed_file.data)
     if path.suffix.lower() not in (".hdr", ".exr"):
-        raise Refusal(f"the environment texture {path.name} is neither .hdr nor .exr", "convert it and open that file")
+        raise NotPlain
     return path

@@ -31,10 +31,15 @@ struct Projection {
   ProjectionKind kind = ProjectionKind::perspective;
   double yfov_rad = 50.0 * kRadPerDeg;  // perspective: vertical field of view, 0 < yfov < pi
   double ymag_m = 1.0;                  // orthographic: half the height of the view
+  // Where the frame's middle lies right of and above the view axis: of a perspective camera one metre before it.
+  Vec2d middle_m;
   // glTF's znear and zfar: rays are clipped to depths in [near_m, far_m]; far_m 0: infinite.
   double near_m = 0.0, far_m = 0.0;
   friend bool operator==(const Projection&, const Projection&) = default;
 };
+
+// Width and height of a pixel: of a perspective camera one metre before it.
+double pixel_step_m(const Projection& projection, int height_px);
 
 // A thin lens. What lies at the focus distance is sharp; a point at distance d along the view axis blurs into a disc of
 // diameter 2 radius |d - focus| / (d focus), measured in tangents of the view angle. The field of view is that of the
@@ -54,7 +59,8 @@ struct Camera {
   CameraPose pose;  // in the middle of the frame's time
   Projection projection;
   Lens lens;
-  // How far the frame's middle is right of and below the view axis, in its pixels: not 0 in windows of a larger frame.
+  // How far the frame's middle is right of and below the view axis, in its pixels: not 0 in windows of a larger frame,
+  // and where the lens is shifted.
   Vec2d middle_px;
   // Poses at equal steps of time from the opening to the closing of the shutter, both included. Between two of them the
   // position is interpolated linearly and the orientation by slerp. Empty: the camera stands still while the shutter is

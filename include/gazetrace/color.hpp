@@ -25,11 +25,12 @@ struct ExposureSettings {
 double choose_exposure_ev(const ImageRgb& radiance, const ExposureSettings& settings);
 
 struct ColorSettings {
-  std::string config;   // OCIO config file; empty: that of $OCIO; neither: the built-in one
-  std::string input;    // name of linear Rec.709 in a config without aces_interchange
-  std::string display;  // empty: the config's default
-  std::string view;     // empty: the display's default
-  std::string look;     // empty: those of the view
+  std::string config;     // OCIO config file; empty: that of $OCIO; neither: the built-in one
+  std::string input;      // name of linear Rec.709 in a config without aces_interchange
+  std::string display;    // empty: the config's default
+  std::string view;       // empty: the display's default
+  std::string look;       // empty: those of the view
+  bool is_needed = true;  // false: no picture goes through the view, which the run record names all the same
 };
 
 struct ViewInfo {
@@ -46,7 +47,8 @@ struct DisplayImage {
 class ColorPipeline {
  public:
   // Error(usage) for an unknown display, view or look (with the known ones), Error(input) for a config that cannot be
-  // read or that offers no way in from linear Rec.709.
+  // read or that offers no way in from linear Rec.709. The built-in view takes the place of a config for a newer
+  // OpenColorIO, and of one that cannot be read and is not needed; warnings() says so.
   explicit ColorPipeline(const ColorSettings& settings);
   ~ColorPipeline();
   ColorPipeline(ColorPipeline&&) noexcept;
@@ -65,6 +67,7 @@ class ColorPipeline {
   void prepare(int width_px, int height_px, int bits, int threads = 0) const;
 
   [[nodiscard]] const std::vector<ViewInfo>& views() const;
+  [[nodiscard]] const Warnings& warnings() const;
   [[nodiscard]] std::string description() const;  // such as "built-in: display sRGB, view ..."
 
  private:

@@ -22,6 +22,11 @@ def iohub(finds_itself=False):
     end("gazetrace gaze iohub", main, finds_itself)
 
 
+def import_scene(finds_itself=False):
+    from .import_command import main
+    end("gazetrace import", main, finds_itself)
+
+
 def which(words):
     commands = {"sweep": sweep, "gaze": gaze}
     if not words or words[0] not in commands:

@@ -18,8 +18,7 @@ PixelProjection::PixelProjection(const Camera& camera, int width_px, int height_
       up_(rotate(camera.pose.orientation, {0, 1, 0})),
       forward_(rotate(camera.pose.orientation, {0, 0, -1})),
       center_px_{width_px / 2.0 - camera.middle_px.x, height_px / 2.0 - camera.middle_px.y} {
-  const double half_height = perspective_ ? std::tan(camera.projection.yfov_rad / 2) : camera.projection.ymag_m;
-  step_ = 2 * half_height / height_px;
+  step_ = pixel_step_m(camera.projection, height_px);
 }
 
 Vec2d PixelProjection::direction(const Vec3d& d) const {

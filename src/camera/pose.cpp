@@ -37,6 +37,11 @@ CameraPath static_camera(const CameraPose& pose, const Projection& projection) {
   return path;
 }
 
+double pixel_step_m(const Projection& projection, int height_px) {
+  const bool parallel = projection.kind == ProjectionKind::orthographic;
+  return 2 * (parallel ? projection.ymag_m : std::tan(projection.yfov_rad / 2)) / height_px;
+}
+
 double lens_radius_m(double f_number, double sensor_height_mm, double yfov_rad) {
   const double focal_length_m = sensor_height_mm * 1e-3 / (2 * std::tan(yfov_rad / 2));
   return f_number > 0 ? focal_length_m / (2 * f_number) : 0;

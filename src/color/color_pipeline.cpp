@@ -110,6 +110,9 @@ void ColorPipeline::prepare(int width_px, int height_px, int bits, int threads) 
 const std::vector<ViewInfo>& ColorPipeline::views() const {
   return impl_->view.views();
 }
+const Warnings& ColorPipeline::warnings() const {
+  return impl_->view.warnings();
+}
 std::string ColorPipeline::description() const {
   return impl_->view.description();
 }

@@ -6,8 +6,10 @@
 
 #include <array>
 #include <bit>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 namespace ocio = OCIO_NAMESPACE;
 
@@ -134,7 +136,36 @@ struct LoadedConfig {
   std::string path;  // empty: built in
 };
 
-LoadedConfig load_config(const ColorSettings& settings) {
+struct ConfigVersion {
+  int major = 0, minor = 0;
+  auto operator<=>(const ConfigVersion&) const = default;
+};
+
+// The version that a config states; none in archives, within the library, and in files that are no configs.
+ConfigVersion stated_version(const std::string& path) {
+  std::ifstream file(path);
+  ConfigVersion version;
+  for (std::string line; std::getline(file, line);) {
+    if (std::sscanf(line.c_str(), "ocio_profile_version: %d.%d", &version.major, &version.minor) > 0) {
+      break;
+    }
+  }
+  return version;
+}
+
+// Why this OpenColorIO cannot read a config that a newer one can; empty where that is not so.
+std::string why_too_new(const std::string& path, const std::string& place) {
+  const ConfigVersion stated = stated_version(path);
+  const std::string library = ocio::GetVersion();
+  ConfigVersion known;
+  std::sscanf(library.c_str(), "%d.%d", &known.major, &known.minor);
+  const auto text = [](const ConfigVersion& v) { return std::to_string(v.major) + "." + std::to_string(v.minor); };
+  return stated <= known ? std::string()
+                         : place + ": the config has version " + text(stated) + ", and this program's OpenColorIO " +
+                               library + " reads those up to " + text(known);
+}
+
+LoadedConfig load_config(const ColorSettings& settings, std::string& why_replaced) {
   std::string path = settings.config;
   std::string place = path;
   if (path.empty()) {
@@ -158,12 +189,31 @@ LoadedConfig load_config(const ColorSettings& settings) {
   if (!is_within_library && !std::filesystem::exists(path)) {
     throw Error(ErrorKind::input, place, "no such OpenColorIO config", "give an existing file or leave it out");
   }
+  if (!is_within_library) {
+    why_replaced = why_too_new(path, place);
+    if (!why_replaced.empty()) {
+      return {make_builtin_config(), ""};
+    }
+  }
   try {
     auto config = ocio::Config::CreateFromFile(path.c_str());
     config->validate();
     return {config, path};
   } catch (const std::exception& e) {
     throw Error(ErrorKind::input, place, std::string("not a usable OpenColorIO config: ") + e.what(), {});
+  }
+}
+
+// The config, or the built-in one in its place: then `why_replaced` is not empty.
+LoadedConfig load_or_replace(const ColorSettings& settings, std::string& why_replaced) {
+  try {
+    return load_config(settings, why_replaced);
+  } catch (const Error& error) {
+    if (settings.is_needed) {
+      throw;
+    }
+    why_replaced = error.what();
+    return {make_builtin_config(), ""};
   }
 }
 
@@ -265,13 +315,21 @@ bool shows_data(const ocio::Config& config, const std::string& display, const st
 
 struct OcioView::Impl {
   std::vector<ViewInfo> views;
+  Warnings warnings;
   std::string description;
   bool is_builtin_aces = false;
   ocio::ConstCPUProcessorRcPtr to_8, to_16, to_float;
 };
 
-OcioView::OcioView(const ColorSettings& settings) : impl_(std::make_unique<Impl>()) {
-  const LoadedConfig loaded = load_config(settings);
+OcioView::OcioView(const ColorSettings& given) : impl_(std::make_unique<Impl>()) {
+  std::string why_replaced;
+  const LoadedConfig loaded = load_or_replace(given, why_replaced);
+  // The names of another config mean nothing to the built-in one.
+  const ColorSettings settings = why_replaced.empty() ? given : ColorSettings{};
+  if (!why_replaced.empty()) {
+    impl_->warnings.push_back(
+        why_replaced + (given.is_needed ? "; pictures have the built-in view instead" : "; no picture needs it"));
+  }
   const ocio::Config& config = *loaded.config;
   const std::string place = loaded.path.empty() ? "built-in color config" : loaded.path;
   impl_->views = list_views(config);
@@ -338,6 +396,9 @@ OcioView::~OcioView() = default;
 
 const std::vector<ViewInfo>& OcioView::views() const {
   return impl_->views;
+}
+const Warnings& OcioView::warnings() const {
+  return impl_->warnings;
 }
 const std::string& OcioView::description() const {
   return impl_->description;

@@ -15,7 +15,7 @@ namespace gazetrace {
 // Converts linear Rec.709 to display code values. May be used from several threads at once.
 class OcioView {
  public:
-  explicit OcioView(const ColorSettings& settings);
+  explicit OcioView(const ColorSettings& given);
   ~OcioView();
   OcioView(const OcioView&) = delete;
   OcioView& operator=(const OcioView&) = delete;
@@ -27,6 +27,7 @@ class OcioView {
   void apply_float(float* rgb, std::size_t count) const;
 
   [[nodiscard]] const std::vector<ViewInfo>& views() const;
+  [[nodiscard]] const Warnings& warnings() const;
   [[nodiscard]] const std::string& description() const;
   [[nodiscard]] bool is_builtin_aces() const;
 

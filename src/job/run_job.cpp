@@ -30,6 +30,14 @@ AovsOfMemory take_aovs_of_memory(JobSettings& settings) {
   return aovs;
 }
 
+// Pictures go through the view, and so does the judging of a sequence's quality.
+ColorSettings colors_of_run(const JobSettings& job, const RunOptions& options) {
+  ColorSettings color = job.color;
+  color.is_needed = options.shows_frames || !pipeline_settings(job).output.display.pattern.empty() ||
+                    job.foveation.target.jod.has_value();
+  return color;
+}
+
 ResolvedJob resolve_run(const Job& job, const RunObserver& observer, const RunOptions& options) {
   if (job.settings.scene.empty() && options.loaded == nullptr) {
     throw Error(ErrorKind::usage, "", "no scene was given", "give `scene`");
@@ -73,9 +81,10 @@ SequenceResult render(ResolvedJob& resolved, PathTracer& tracer, const ColorPipe
 
 FinishedRun run_job(const Job& job, const RunObserver& observer, const RunOptions& options) {
   using Clock = std::chrono::steady_clock;
-  const auto color = std::make_shared<ColorPipeline>(job.settings.color);
+  const auto color = std::make_shared<ColorPipeline>(colors_of_run(job.settings, options));
   FinishedRun run;
   ResolvedJob& resolved = run.resolved = resolve_run(job, observer, options);
+  resolved.warnings.insert(resolved.warnings.end(), color->warnings().begin(), color->warnings().end());
   make_output_folders(resolved);
   const OutputLock lock = lock_outputs(resolved.pipeline, resolved.frames);
   resolved.warnings.insert(resolved.warnings.end(), lock.warnings().begin(), lock.warnings().end());

@@ -49,41 +49,16 @@ Imath::M44d world_to_camera(const CameraPose& pose) {
 // leaves open, is 0 at the near plane.
 Imath::M44d camera_to_ndc(const Projection& projection, double aspect) {
   const double near_m = projection.near_m > 0 ? projection.near_m : 1e-3;
-  if (projection.kind == ProjectionKind::orthographic) {
-    return {0.5 / (projection.ymag_m * aspect),
-            0,
-            0,
-            0,  //
-            0,
-            -0.5 / projection.ymag_m,
-            0,
-            0,  //
-            0,
-            0,
-            1,
-            0,  //
-            0.5,
-            0.5,
-            -near_m,
-            1};
+  const bool parallel = projection.kind == ProjectionKind::orthographic;
+  const double half_height = parallel ? projection.ymag_m : std::tan(projection.yfov_rad / 2);
+  const double x = 0.5 / (half_height * aspect);
+  const double y = -0.5 / half_height;
+  const double middle_x = 0.5 - x * projection.middle_m.x;
+  const double middle_y = 0.5 - y * projection.middle_m.y;
+  if (parallel) {
+    return {x, 0, 0, 0, 0, y, 0, 0, 0, 0, 1, 0, middle_x, middle_y, -near_m, 1};
   }
-  const double slope = std::tan(projection.yfov_rad / 2);
-  return {0.5 / (slope * aspect),
-          0,
-          0,
-          0,  //
-          0,
-          -0.5 / slope,
-          0,
-          0,  //
-          0.5,
-          0.5,
-          1,
-          1,  //
-          0,
-          0,
-          -near_m,
-          0};
+  return {x, 0, 0, 0, 0, y, 0, 0, middle_x, middle_y, 1, 1, 0, 0, -near_m, 0};
 }
 
 std::string camera_text(const Camera& camera) {
@@ -96,8 +71,10 @@ std::string camera_text(const Camera& camera) {
   const std::string lens = camera.lens.radius_m > 0 ? fmt::format(" aperture_radius_m={} focus_distance_m={}",
                                                                   camera.lens.radius_m, camera.lens.focus_distance_m)
                                                     : "";
-  return fmt::format("position_m={},{},{} orientation_xyzw={},{},{},{} projection={} near_m={} far_m={}{}", p.x, p.y,
-                     p.z, q.x, q.y, q.z, q.w, view, projection.near_m, projection.far_m, lens);
+  const Vec2d& m = projection.middle_m;
+  const std::string middle = m == Vec2d{} ? "" : fmt::format(" middle_m={},{}", m.x, m.y);
+  return fmt::format("position_m={},{},{} orientation_xyzw={},{},{},{} projection={}{} near_m={} far_m={}{}", p.x, p.y,
+                     p.z, q.x, q.y, q.z, q.w, view, middle, projection.near_m, projection.far_m, lens);
 }
 
 std::string gaze_header(const GazeAtTime& gaze) {

@@ -143,6 +143,8 @@ GazeGeometry::GazeGeometry(const CameraPath& camera, const GazeLog* log, const P
     const Projection projection =
         camera.projection.kind == ProjectionKind::perspective ? camera.projection : Projection{};
     view_ = view_of_perspective(projection.yfov_rad, settings.width_px, settings.height_px);
+    view_.left += projection.middle_m.x;
+    view_.top += projection.middle_m.y;
   }
 }
 

@@ -218,6 +218,8 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
     request.before = view_at(camera, time_in_frame_ns(settings, frame, -0.5));
     request.after = view_at(camera, time_in_frame_ns(settings, frame, 1.5));
     request.camera.projection = camera.projection;
+    const double step_m = pixel_step_m(camera.projection, settings.height_px);
+    request.camera.middle_px = {camera.projection.middle_m.x / step_m, -camera.projection.middle_m.y / step_m};
     request.camera.lens = camera.lens;
     request.camera.shutter_poses = shutter_poses(camera, request.shutter_open_ns, request.shutter_close_ns);
     if (log != nullptr) {

@@ -100,6 +100,9 @@ Json camera_json(const Camera& camera) {
   } else {
     json["ymag_m"] = camera.projection.ymag_m;
   }
+  if (const Vec2d& middle = camera.projection.middle_m; middle != Vec2d{}) {
+    json["middle_m"] = Json::array({middle.x, middle.y});
+  }
   return json;
 }
 

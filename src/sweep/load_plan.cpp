@@ -187,9 +187,10 @@ class PlanMaker {
   }
 
   // Every check that needs nothing large to be loaded.
-  void check(const Job& job) const {
+  void check(const Job& job) {
     check_job(job, schema_);
     const ColorPipeline color(job.settings.color);
+    jobs_.warnings.insert(jobs_.warnings.end(), color.warnings().begin(), color.warnings().end());
     Scene scene;
     if (job.settings.environment != "auto") {
       set_environment(job.settings, scene);

@@ -23,6 +23,7 @@ class View:
     sensor_mm: tuple[float, float] = (36, 24)
     fit: str = "AUTO"
     kind: str = "PERSP"
+    shift: tuple[float, float] = (0, 0)
 
 
 VIEWS = [
@@ -33,6 +34,8 @@ VIEWS = [
     View("long lens, vertical fit", size=(400, 300), lens_mm=42, fit="VERTICAL"),
     View("parallel rays, vertical fit", size=(320, 180), fit="VERTICAL", kind="ORTHO"),
     View("parallel rays, upright", size=(180, 240), kind="ORTHO"),
+    View("shifted lens, upright", size=(180, 240), shift=(0.06, -0.1)),
+    View("parallel rays, shifted", kind="ORTHO", shift=(-0.1, 0.05)),
 ]
 
 
@@ -108,6 +111,7 @@ def build(view: View) -> bpy.types.Scene:
     lens.type = view.kind
     lens.lens, lens.ortho_scale, lens.sensor_fit = view.lens_mm, 3.5, view.fit
     lens.sensor_width, lens.sensor_height = view.sensor_mm
+    lens.shift_x, lens.shift_y = view.shift
     camera = bpy.data.objects.new("camera", lens)
     scene.collection.objects.link(camera)
     scene.camera = camera

@@ -49,6 +49,7 @@ std::vector<Member> members_of(const Infos& infos) {
 std::vector<Member> view_members(const ListArguments& arguments) {
   std::vector<Member> members;
   const ColorPipeline color(arguments.color);
+  print_warnings(color.warnings());
   for (const ViewInfo& view : color.views()) {
     members.push_back({view.view, "on display '" + view.display + "'" + (view.is_default ? ", the default" : "")});
   }

@@ -109,6 +109,7 @@ class FrameMaker {
         inputs_(inputs),
         rings_deg_(ring_angles_deg(foveated_run(inputs))),
         color_(compare_color(arguments.job, inputs)) {
+    print_warnings(color_.warnings());
     if (arguments.show_rings && (rings_deg_.empty() || !inputs.screen)) {
       throw Error(
           ErrorKind::usage, "--show-rings",

@@ -13,6 +13,8 @@
 namespace gazetrace {
 namespace {
 
+constexpr double kFarthestMiddle_m = 1e6;  // beyond it, rays have no precision
+
 Projection projection_of(const GltfDocument& document, int camera_index) {
   const GltfCamera& from = document.cameras[static_cast<std::size_t>(camera_index)];
   const std::string place = document.path + ": cameras[" + std::to_string(camera_index) + "]";
@@ -30,6 +32,11 @@ Projection projection_of(const GltfDocument& document, int camera_index) {
     if (!(projection.ymag_m > 0)) {
       throw Error(ErrorKind::input, place, "ymag must not be zero");
     }
+  }
+  projection.middle_m = from.middle_m;
+  if (!(std::hypot(projection.middle_m.x, projection.middle_m.y) <= kFarthestMiddle_m)) {
+    throw Error(ErrorKind::input, place + ".extras.gazetrace.middle_m", "is no place before a camera",
+                "give two numbers in metres");
   }
   if (projection.far_m != 0 && projection.far_m <= projection.near_m) {
     throw Error(ErrorKind::input, place, "zfar is not beyond znear");

@@ -204,6 +204,12 @@ GltfCamera camera(const tinygltf::Camera& from) {
   to.ymag = from.orthographic.ymag;
   to.znear = to.perspective ? from.perspective.znear : from.orthographic.znear;
   to.zfar = to.perspective ? from.perspective.zfar : from.orthographic.zfar;
+  // A shifted lens, which glTF has not, in {"extras": {"gazetrace": {"middle_m": [0.1, 0]}}}.
+  const Value own = from.extras.Has("gazetrace") ? from.extras.Get("gazetrace") : Value();
+  const Value middle = own.Has("middle_m") ? own.Get("middle_m") : Value();
+  if (middle.IsArray() && middle.ArrayLen() == 2 && middle.Get(0).IsNumber() && middle.Get(1).IsNumber()) {
+    to.middle_m = {middle.Get(0).GetNumberAsDouble(), middle.Get(1).GetNumberAsDouble()};
+  }
   return to;
 }
 

@@ -99,6 +99,7 @@ struct GltfCamera {
   std::string name;
   bool perspective = true;
   double yfov_rad = 0, ymag = 0, znear = 0, zfar = 0;
+  Vec2d middle_m;  // extras.gazetrace.middle_m
 };
 
 struct GltfLight {

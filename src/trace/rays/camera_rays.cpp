@@ -24,9 +24,8 @@ CameraRays::CameraRays(const Camera& camera, int height_px)
       lens_radius_(static_cast<float>(camera.lens.radius_m)),
       focus_distance_(static_cast<float>(camera.lens.focus_distance_m)),
       keys_(camera.shutter_poses) {
-  const double half_height = perspective_ ? std::tan(camera.projection.yfov_rad / 2) : camera.projection.ymag_m;
   // Pixels are square, so the width follows from the frame's shape.
-  step_ = 2 * half_height / height_px;
+  step_ = pixel_step_m(camera.projection, height_px);
   placement_ = place(camera.pose);
   near_ = static_cast<float>(camera.projection.near_m);
   if (camera.projection.far_m > 0) {

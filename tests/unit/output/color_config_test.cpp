@@ -178,5 +178,39 @@ TEST_F(ColorConfig, BrokenFiles) {
   expect_error(settings, ErrorKind::input, {settings.config});
 }
 
+// Blender 5's config is 2.4, and that of 5.2 is 2.5, whose names of views mean nothing to the built-in one.
+TEST_F(ColorConfig, TooNewForThisLibrary) {
+  ColorSettings settings;
+  std::string text = config_text(kInterchange);
+  settings.config = write(text.replace(text.find("version: 2"), 10, "version: 2.99"));
+  settings.display = "monitor";
+  settings.view = "plain";
+  settings.look = "red";
+  for (const bool is_needed : {true, false}) {
+    settings.is_needed = is_needed;
+    const ColorPipeline pipeline(settings);
+    EXPECT_EQ(pipeline.description(), "built-in: display sRGB, view ACES SDR");
+    EXPECT_THAT(pipeline.warnings(),
+                testing::ElementsAre(testing::AllOf(
+                    testing::StartsWith(settings.config), testing::HasSubstr("version 2.99"),
+                    testing::ContainsRegex("OpenColorIO 2\\.[0-9]+\\.[0-9]+ reads those up to 2\\.[0-9]"),
+                    testing::EndsWith(is_needed ? "pictures have the built-in view instead" : "no picture needs it"))));
+    EXPECT_EQ(show(settings), show({}));
+  }
+  setenv("OCIO", settings.config.c_str(), 1);
+  EXPECT_THAT(ColorPipeline(ColorSettings{}).warnings(), testing::ElementsAre(testing::StartsWith("$OCIO (")));
+}
+
+TEST_F(ColorConfig, BrokenButNotNeeded) {
+  ColorSettings settings;
+  settings.is_needed = false;
+  settings.config = write("this is no config");
+  EXPECT_THAT(
+      ColorPipeline(settings).warnings(),
+      testing::ElementsAre(testing::AllOf(testing::HasSubstr("not a usable"), testing::HasSubstr("no picture"))));
+  settings.config = write(config_text(kInterchange));
+  EXPECT_THAT(ColorPipeline(settings).warnings(), testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace gazetrace

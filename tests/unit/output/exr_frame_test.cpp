@@ -352,12 +352,22 @@ TEST(ExrFrame, MatricesTakeTheWorldToTheScreen) {
   const auto inside = exr_transform(path, "worldToNDC", {1 + 2, 2 - 1, -1});
   EXPECT_NEAR(inside[0], 0.75, 1e-5);
   EXPECT_NEAR(inside[1], 0.75, 1e-5);
+  // The frame's middle moves to what was at 0.75, 0.75: (0.5, -0.25) m from the axis at distance 1.
+  header.camera.projection.middle_m = {0.5, -0.25};
+  write_frame_exr(path, example_frame(40, 20), nullptr, header, settings(ExrPixels::half, "zip"));
+  const auto middle = exr_transform(path, "worldToNDC", {1 + 2, 2 - 1, -1});
+  EXPECT_NEAR(middle[0], 0.5, 1e-5);
+  EXPECT_NEAR(middle[1], 0.5, 1e-5);
+  header.camera.projection.middle_m = {};
   header.camera.projection.kind = ProjectionKind::orthographic;
   header.camera.projection.ymag_m = 2;
   write_frame_exr(path, example_frame(40, 20), nullptr, header, settings(ExrPixels::half, "zip"));
   const auto flat = exr_transform(path, "worldToNDC", {1 + 2, 2 - 1, -100});
   EXPECT_NEAR(flat[0], 0.75, 1e-5);
   EXPECT_NEAR(flat[1], 0.75, 1e-5);
+  header.camera.projection.middle_m = {2, -1};
+  write_frame_exr(path, example_frame(40, 20), nullptr, header, settings(ExrPixels::half, "zip"));
+  EXPECT_NEAR(exr_transform(path, "worldToNDC", {1 + 2, 2 - 1, -100})[0], 0.5, 1e-5);
 }
 
 TEST(ExrFrame, TheSameBytesFromAnyNumberOfThreadsAndAtAnyTime) {

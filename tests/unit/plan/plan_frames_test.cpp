@@ -244,6 +244,13 @@ TEST(PlanFrames, DirectionsUseTheCamerasOwnView) {
   EXPECT_NEAR(pixel.x, 960 + 0.1 * 540, 1e-9);  // 540 px are one unit at 90 degrees
   EXPECT_NEAR(pixel.y, 540 - 0.2 * 540, 1e-9);
   EXPECT_THAT(plan_as_table(plan), HasSubstr("gaze x y z"));
+  camera.projection.middle_m = {0.1, 0.2};  // a lens that is shifted so far that the eye looks at the middle
+  const FramePlan shifted = plan_frames(camera, &log, settings);
+  const Vec2d middle = shifted.frames[0].view.pixel(*shifted.frames[0].gaze_direction_render);
+  EXPECT_NEAR(middle.x, 960, 1e-9);
+  EXPECT_NEAR(middle.y, 540, 1e-9);
+  EXPECT_NEAR(shifted.frames[0].camera.middle_px.x, 54, 1e-9);
+  EXPECT_NEAR(shifted.frames[0].camera.middle_px.y, -108, 1e-9);
   settings.display = display_by_name("paper");
   EXPECT_THAT(plan_frames(camera, &log, settings).warnings,
               ElementsAre("gaze.csv: gaze directions need no display; the given one is not used"));

@@ -78,6 +78,14 @@ TEST(Cameras, PerspectiveAndOrthographicKeepTheirLenses) {
   expect_near(flat.path.pose_at(0).position_m, {1, 2, 3});
 }
 
+TEST(Cameras, ShiftedLenses) {
+  GltfBuilder builder = rig();
+  builder.json["cameras"][0]["extras"]["gazetrace"]["middle_m"] = {0.25, -0.5};
+  EXPECT_EQ(only_path(load(builder)).projection.middle_m, (Vec2d{0.25, -0.5}));
+  builder.json["cameras"][0]["extras"]["gazetrace"]["middle_m"] = {0.25, 1e300};
+  EXPECT_THAT([&] { load(builder); }, testing::ThrowsMessage<Error>(HasSubstr("cameras[0].extras.gazetrace.middle_m")));
+}
+
 TEST(Cameras, ScaledAndMirroredParentsLeaveARotation) {
   GltfBuilder builder = rig();
   const double h = std::sqrt(0.5);
