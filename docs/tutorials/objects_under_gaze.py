@@ -4,8 +4,8 @@
 #
 # In a rendered scene the areas of interest need not be drawn by hand: the renderer knows which object is behind each pixel.
 # `job.outlines()` gives the outline of every object in every frame, with holes, and without what other objects hide
-# (`gazetrace gaze aois --outlines FILE.json` writes the same). This page counts how long the eye was on each object, then
-# hands the outlines to two other forms.
+# (`gazetrace gaze aois --outlines FILE.json` writes the same). This page finds the object of each fixation, then hands the
+# outlines to pymovements and BIDS.
 
 # %%
 import json
@@ -15,13 +15,14 @@ import gazetrace
 import matplotlib.pyplot as plt
 import pandas
 from matplotlib.patches import PathPatch
-from matplotlib.path import Path as Outline
+from matplotlib.path import Path as MplPath
 
-size, frames = (320, 180), range(1, 41)  # small: (96, 54), range(1, 41, 8)
+size, frames = (320, 180), range(1, 41)  # small: (96, 54), range(1, 41)
 log = gazetrace.read_gaze("gazelogs/tx300_left.csv")
 job = gazetrace.Job(scene="scenes/courtyard/courtyard.gltf", camera="walk", gaze=log, size=size, fps=10, frames=frames)
 outlines = job.outlines()
 names = [one["name"] for one in outlines["objects"]]
+print(f"{len(outlines['frames'])} frames, {len(names)} objects")
 
 # %% [markdown]
 # ## One frame with its outlines
@@ -34,8 +35,8 @@ frame = next(job.render())
 fig, axes = plt.subplots(figsize=(8, 4.5))
 axes.imshow(frame.display(), extent=(0, size[0], size[1], 0))
 for seen in outlines["frames"][0]["objects"]:
-    rings = [Outline([*ring, ring[0]], closed=True) for polygon in seen["polygons"] for ring in polygon]
-    axes.add_patch(PathPatch(Outline.make_compound_path(*rings), fill=False, edgecolor=f"C{seen['object'] % 10}", linewidth=0.7))
+    rings = [MplPath([*ring, ring[0]], closed=True) for polygon in seen["polygons"] for ring in polygon]
+    axes.add_patch(PathPatch(MplPath.make_compound_path(*rings), fill=False, edgecolor=f"C{seen['object'] % 10}", linewidth=0.7))
 axes.plot(frame.gaze.u * size[0], frame.gaze.v * size[1], "o", color="gold", markeredgecolor="black")
 axes.set_axis_off()
 plt.show()
@@ -70,25 +71,27 @@ areas = pandas.DataFrame(rectangles(outlines))
 areas.head()
 
 # %% [markdown]
-# ## How long was the eye on what?
+# ## What did each fixation fall on?
 #
-# The gaze of each frame falls into one rectangle, or beside all: then it was on the sky.
+# The camera moves, so a fixation is looked up in the frame of its middle. It falls into one rectangle, or beside all of them:
+# then it was on the sky.
 
 # %%
-plan = job.plan()
-x, y, w, h = outlines["frame_on_display_px"] or (0, 0, *size)
-gaze = pandas.DataFrame({"frame": plan.frame, "x": x + w * plan["gaze_true_u"], "y": y + h * plan["gaze_true_v"]}).dropna()
-hits = gaze.merge(areas, on="frame").query("start_x <= x < end_x and start_y <= y < end_y")
-(hits.object.value_counts() / len(gaze)).rename("share of the time").to_frame().round(3)
+events = log.detect_events().fixations
+fixations = pandas.DataFrame({"onset": events.onset_s * 1000, "offset": events.offset_s * 1000,  # ms, from the video's begin
+                              "frame": ((events.onset_s + events.offset_s) / 2 * 10).astype(int) + 1,
+                              "x": events.u * outlines["display_px"][0], "y": events.v * outlines["display_px"][1]})
+hits = fixations.merge(areas, on="frame").query("start_x <= x < end_x and start_y <= y < end_y")
+hits[["onset", "offset", "frame", "x", "y", "object"]].round(0)
 
 # %% [markdown]
-# A tracker is off by half a degree, so a gaze beside a border may belong to either side. `gazetrace gaze objects` gives each
-# object its share of the uncertainty; its figures are those for a paper.
+# A tracker is off by half a degree, so that a fixation beside a border may belong to either side. `gazetrace gaze objects` gives
+# each object its share of that uncertainty, in every frame.
 #
 # ## For pymovements
 #
-# Its areas of interest are such rectangles, of a page each: our pages are frames. `map_to_aois` finds the object of each
-# fixation.
+# Its areas of interest are such rectangles, each of them on a page: here a page is a frame. Its `map_to_aois` finds the object of
+# each fixation.
 
 # %% needs: pymovements
 import polars
@@ -97,10 +100,10 @@ import pymovements
 stimulus = pymovements.stimulus.TextStimulus(
     polars.from_pandas(areas), aoi_column="object", page_column="frame",
     start_x_column="start_x", start_y_column="start_y", end_x_column="end_x", end_y_column="end_y")
-looks = pymovements.Events(polars.DataFrame({"name": ["fixation"] * len(gaze), "onset": list(gaze.index), "offset": list(gaze.index + 1),
-                                             "frame": gaze.frame.to_list(), "location_x": gaze.x.to_list(), "location_y": gaze.y.to_list()}))
+looks = pymovements.Events(polars.from_pandas(
+    fixations.rename(columns={"x": "location_x", "y": "location_y"}).assign(name="fixation")))
 looks.map_to_aois(stimulus, verbose=False)
-print(looks.frame.select("frame", "object").head())
+print(looks.frame.select("onset", "offset", "frame", "object"))
 
 # %% [markdown]
 # ## For BIDS

@@ -72,6 +72,17 @@ class TutorialTest(TestCase):
         for frame in outlines["frames"]:
             self.assertEqual(covered[frame["frame"]].sum(), sum(one["pixels"] for one in frame["objects"]))
 
+    @unittest.skipUnless(importlib.util.find_spec("pymovements"), "pymovements is not installed")
+    def test_pymovements_finds_the_same_objects(self):
+        outlines, _, *others = self.code_of("objects_under_gaze.py")
+        names = {}
+        for source in (outlines.replace("size, frames = (320, 180)", "size, frames = (96, 54)"), *others[:3]):
+            exec(source, names)
+        theirs = {row["onset"]: row["object"] for row in names["looks"].frame.iter_rows(named=True)}
+        ours = dict(zip(names["hits"].onset, names["hits"].object))
+        self.assertGreater(len(ours), 5)
+        self.assertEqual({onset: name for onset, name in theirs.items() if name}, ours)
+
 
 if __name__ == "__main__":
     unittest.main()
