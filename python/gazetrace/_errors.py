@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What can go wrong, in the words of the library."""
 
+import warnings
+
 from gazetrace_report.errors import Error
 
 Error.__module__ = "gazetrace"  # as users see it; the reports have it without this package's compiled module
@@ -8,3 +10,9 @@ Error.__module__ = "gazetrace"  # as users see it; the reports have it without t
 
 class GazetraceWarning(UserWarning):
     """What the program prints as a warning."""
+
+
+def warn(texts):
+    """One warning of all that is to be said, where a method of the package was called."""
+    if texts:
+        warnings.warn("\n".join(texts), GazetraceWarning, stacklevel=3)

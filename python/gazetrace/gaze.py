@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _core
 from ._columns import as_array, columns_of, flattened, frame_of
-from ._errors import Error
+from ._errors import Error, warn
 from ._options import split
 from ._table import Events, Table, as_html
 
@@ -83,15 +83,22 @@ class GazeLog:
         """Fixations, saccades and blinks by a published method, as `gazetrace gaze events` finds them: `Events`.
 
         `method` is a preset (`gazetrace list event-methods`), "auto", or "log" for the events that the log itself states.
-        `device` is "desktop" or "head-mounted", where places or directions do not tell.
+        `device` is "desktop" or "head-mounted", where places or directions do not tell. Where the events are not to be relied
+        on, a warning says why, and which methods or steps of `process()` suit the log better.
         """
-        found = json.loads(self._core.detected_events(method, device or ""))
+        text, doubts = self._core.detected_events(method, device or "")
+        warn(doubts)
+        found = json.loads(text)
         columns = columns_of([flattened(event) for event in found["events"]])
         if not columns:
             columns = {name: np.array([]) for name in ("movement", "onset_ns", "offset_ns", "duration_ms")}
         first = self._core.t_ns[0] if len(self) else 0
         times = {f"{name}_s": (columns[f"{name}_ns"] - first) * 1e-9 for name in ("onset", "offset")}
         return Events({"movement": columns.pop("movement"), **times, **columns})
+
+    def process(self, *steps):
+        """The log after steps of the option `gaze_process`, such as "median:samples=5"."""
+        return GazeLog(self._core.processed(list(steps)), self._keep_ids)
 
     @property
     def facts(self):

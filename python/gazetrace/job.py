@@ -4,14 +4,13 @@
 import json
 import os
 import tempfile
-import warnings
 import weakref
 from pathlib import Path
 
 import numpy as np
 
 from . import _core
-from ._errors import Error, GazetraceWarning
+from ._errors import Error, warn
 from ._exr import write_gray_exr
 from ._options import by_name, texts_of
 from .gaze import write_log
@@ -118,14 +117,14 @@ class Job:
     def plan(self):
         """What would be rendered, decided before the first ray: a `Plan`. Needs the scene only where the camera is in it."""
         planned = _core.Planned(self._core)
-        _warn(planned.warnings())
+        warn(planned.warnings())
         return Plan(planned)
 
     def outlines(self):
         """Where each object of the scene is seen in each frame, exact to the pixel: what `gazetrace gaze aois --outlines`
         writes, as a dictionary. docs/gaze.md says what is in it."""
         text, warnings = _core.outlines(self._core)
-        _warn(warnings)
+        warn(warnings)
         return json.loads(text)
 
     def load_scene(self):
@@ -140,7 +139,7 @@ class Job:
         nothing is written.
         """
         rendering = Rendering(_core.Rendering(self._core, scene), keep=self._folders)
-        _warn(rendering.warnings)
+        warn(rendering.warnings)
         return rendering
 
     def run(self, on_frame=None, *, scene=None):
@@ -159,14 +158,3 @@ class _TemporaryFolder:
         folder = tempfile.TemporaryDirectory(prefix="gazetrace.")
         self.path = Path(folder.name)
         self._finalizer = weakref.finalize(self, folder.cleanup)
-
-
-def _warn(texts):
-    """One warning of all that is to be said."""
-    if texts:
-        warnings.warn("\n".join(texts), GazetraceWarning, stacklevel=3)
-
-
-def write_density(path, array):
-    """Writes a density as an EXR that the option `density` reads, for runs that are to be repeatable."""
-    write_gray_exr(Path(path), np.asarray(array))

@@ -7,8 +7,9 @@ from pathlib import Path
 from gazetrace_report.results import Results
 
 from . import _core
+from ._errors import warn
 from ._options import texts_of
-from .job import _OPTIONS, _warn
+from .job import _OPTIONS
 
 
 def sweep(plan, output=None, *, frames=None, threads=None, restart=False, tell=None):
@@ -23,5 +24,5 @@ def sweep(plan, output=None, *, frames=None, threads=None, restart=False, tell=N
     plan = Path(plan)
     output = Path(output) if output is not None else Path(plan.stem + ".sweep")
     frames = None if frames is None else texts_of(_OPTIONS["frames"], frames)[0]
-    _warn(_core.sweep(os.fspath(plan), os.fspath(output), frames, threads, restart, tell))
+    warn(_core.sweep(os.fspath(plan), os.fspath(output), frames, threads, restart, tell))
     return Results(output)

@@ -11,9 +11,12 @@
 
 #include "arrays.hpp"
 #include "bind.hpp"
+#include "errors.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/gaze_event_check.hpp"
 #include "gazetrace/gaze_events.hpp"
 #include "gazetrace/gaze_log.hpp"
+#include "gazetrace/gaze_process.hpp"
 #include "gazetrace/gaze_read.hpp"
 #include "gazetrace/gaze_trials.hpp"
 #include "gazetrace/gaze_write.hpp"
@@ -98,8 +101,9 @@ py::list facts(const GazeLog& log) {
   return list;
 }
 
-// By the name of a preset, "auto", or "log" for those that the log states.
-std::string detected_events(const GazeLog& log, const std::string& method, const std::string& device_name) {
+// By the name of a preset, "auto", or "log" for those that the log states: events as JSON, and why not to rely on them.
+std::pair<std::string, std::vector<std::string>> detected_events(const GazeLog& log, const std::string& method,
+                                                                 const std::string& device_name) {
   std::optional<GazeDevice> device;
   for (const GazeDevice one : {GazeDevice::desktop, GazeDevice::head_mounted}) {
     device = to_string(one) == device_name ? std::optional(one) : device;
@@ -107,13 +111,20 @@ std::string detected_events(const GazeLog& log, const std::string& method, const
   if (!device_name.empty() && !device) {
     throw Error(ErrorKind::usage, "`device`", "is 'desktop' or 'head-mounted', not '" + device_name + "'");
   }
-  const auto found = [&] {
-    if (method == "log") {
-      return events_of_log(log);
-    }
-    return detect_events(log, method == "auto" ? default_event_preset(log, device) : event_preset(method), device);
-  };
-  return events_as_json(found(), log);
+  if (method == "log") {
+    return {events_as_json(events_of_log(log), log), {}};
+  }
+  const EyeEvents found =
+      detect_events(log, method == "auto" ? default_event_preset(log, device) : event_preset(method), device);
+  return {events_as_json(found, log), in_keywords(doubts_in_words(doubt_events(log, found), found, log))};
+}
+
+LogPtr processed(const GazeLog& log, const std::vector<std::string>& texts) {
+  std::vector<GazeStep> steps;
+  for (const std::string& text : texts) {
+    steps.push_back(parse_gaze_step(text));
+  }
+  return std::make_shared<GazeLog>(process_gaze(log, steps).log);
 }
 
 // Samples from one to the one before another, with what the log says of their time.
@@ -156,6 +167,7 @@ void bind_gaze(py::module_& module) {
           [](const GazeLog& log) { return names(log, [](const GazeSample& sample) { return to_string(sample.eye); }); })
       .def("events", &events)
       .def("detected_events", &detected_events, py::call_guard<py::gil_scoped_release>())
+      .def("processed", &processed, py::call_guard<py::gil_scoped_release>())
       .def("part", &part_of, py::call_guard<py::gil_scoped_release>())
       .def("write", [](const GazeLog& log, const std::string& path) { write_gaze_csv(log, path); })
       .def("facts", &facts);

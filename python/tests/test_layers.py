@@ -43,6 +43,19 @@ def seen_from(camera, places, size):
         return np.stack([width / 2 + focal_px * local[..., 0] / depth, height / 2 - focal_px * local[..., 1] / depth], -1), depth
 
 
+def filled_again(objects, numbers, size):
+    """Outlines as numbers of pixels, by the even-odd rule along each row of pixels' middles."""
+    filled = np.zeros((size[1], size[0]), int)
+    for seen in objects:
+        crossed = np.zeros((size[1], size[0] + 1), int)
+        for ring in (ring for polygon in seen["polygons"] for ring in polygon):
+            for (x, y), (to_x, to_y) in zip(ring, ring[1:] + ring[:1]):
+                if x == to_x:
+                    crossed[min(y, to_y):max(y, to_y), x] += 1
+        filled[crossed.cumsum(1)[:, :-1] % 2 == 1] = numbers[seen["object"]]
+    return filled
+
+
 class LayersTest(TestCase):
     def test_every_layer_is_there_and_is_the_frame(self):
         (frame,) = frames_of("9")
@@ -96,6 +109,25 @@ class LayersTest(TestCase):
         nothing = frame.matte("crypto_object", "no such thing")
         self.assertEqual((nothing.shape, nothing.max()), ((36, 64), 0))
         self.assertSays("crypto_light", "usage", frame.matte, "crypto_light", "lamp")
+
+    def test_outlines_filled_again_are_the_mattes(self):
+        """Each pixel is of the object that most of its samples saw, but for some at borders, whose samples see both sides."""
+        numbers, size = "1,14,27,40", (96, 54)
+        outlines = gazetrace.Job(scene=COURTYARD, camera="walk", frames=numbers, size=size, fps=10).outlines()
+        nodes = ["", *dict.fromkeys(one["node"] for one in outlines["objects"])]
+        inside = wrong = at_border = wrong_there = 0
+        for frame, outlined in zip(frames_of(numbers, size="96x54", fps="10", spp="8", aov="crypto_object"), outlines["frames"], strict=True):
+            filled = filled_again(outlined["objects"], [nodes.index(one["node"]) for one in outlines["objects"]], size)
+            mattes = np.stack([frame.matte("crypto_object", node) for node in nodes])
+            mattes[0] = 1 - mattes.sum(0)  # the environment
+            around = np.lib.stride_tricks.sliding_window_view(filled, (3, 3)).reshape(size[1] - 2, size[0] - 2, 9)
+            alone = (around == around[..., :1]).all(-1)
+            differs = mattes.argmax(0)[1:-1, 1:-1] != filled[1:-1, 1:-1]
+            inside, at_border = inside + alone.sum(), at_border + (~alone).sum()
+            wrong, wrong_there = wrong + differs[alone].sum(), wrong_there + differs[~alone].sum()
+        self.assertGreater(inside, 4 * 96 * 54 / 2)
+        self.assertEqual(wrong, 0, f"of {inside} pixels whose neighbours are all of the same object")
+        self.assertLess(wrong_there, at_border / 8)  # moved by a pixel, more than a quarter
 
     @needs_program
     def test_they_are_the_layers_of_the_program(self):

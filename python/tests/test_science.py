@@ -2,11 +2,7 @@
 """What a perception scientist writes: events of a log, logs and arrays as the gaze of a job, pieces, pictures, durations."""
 
 import datetime
-import importlib.util
 import json
-import math
-import os
-import runpy
 import struct
 import sys
 import unittest
@@ -65,6 +61,20 @@ class EventsTest(TestCase):
         self.assertIn("<th>movement</th>", fixations._repr_html_())
         self.assertSays("unknown", "usage", log.detect_events, "ivtt")
         self.assertSays("desktop", "usage", log.detect_events, device="phone")
+
+    @needs_program
+    def test_processed_gaze_and_doubts_are_those_of_the_program(self):
+        path = ROOT / "gazelogs/tx300_left.csv"
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            gazetrace.read_gaze(path).detect_events()
+        self.assertEqual(len(caught), 1)
+        self.assertIn("saccades for", str(caught[0].message))
+        self.assertIn("`gaze_process` median:samples=5", str(caught[0].message))
+        found = gazetrace.read_gaze(path).process("median:samples=5", "fill-gaps").detect_events()
+        run = run_program("gaze", "events", path, "--gaze-process", "median:samples=5", "--gaze-process", "fill-gaps", "--json")
+        np.testing.assert_array_equal(found.onset_ns, [event["onset_ns"] for event in json.loads(run.stdout)["events"]])
+        self.assertSays("did you mean 'median'", "usage", gazetrace.read_gaze(path).process, "medn")
 
     def test_texts_of_messages_are_hidden(self):
         path = self.folder / "log.asc"
@@ -159,24 +169,6 @@ class PiecesTest(TestCase):
         self.assertSays(".png, .exr or .npy", "usage", frame.save, "f.gif")
         self.assertEqual(frame.eccentricity.shape, (18, 32))
         self.assertLess(frame.eccentricity[9, 16], frame.eccentricity[0, 0])
-
-    @unittest.skipUnless(importlib.util.find_spec("matplotlib"), "matplotlib is not installed")
-    def test_fifteen_lines(self):
-        path = ROOT / "examples/python/fifteen_lines.py"
-        lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
-        self.assertLessEqual(len(lines), 15)
-        import matplotlib
-        matplotlib.use("agg")
-        before = os.getcwd()
-        self.addCleanup(os.chdir, before)
-        os.chdir(ROOT)
-        small = self.folder / "small.py"
-        small.write_text(path.read_text(encoding="utf-8").replace("(320, 180)", "(64, 36)").replace("range(1, 7)", "range(1, 3)").replace(
-            '"fifteen_lines.svg"', repr(str(self.folder / "made.svg"))))
-        names = runpy.run_path(str(small))
-        self.assertEqual(len(names["frames"]), 2)
-        self.assertTrue(math.isfinite(names["error"]["flip"]))
-        self.assertIn("FLIP from uniform", (self.folder / "made.svg").read_text())
 
 
 if __name__ == "__main__":
