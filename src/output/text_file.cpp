@@ -9,7 +9,7 @@
 namespace gazetrace {
 
 void check_output_file(const std::string& path, bool overwrite) {
-  refuse_special_file(path);
+  refuse_impossible_file(path);
   if (!overwrite && std::filesystem::exists(path)) {
     throw Error(ErrorKind::input, path, "this output exists already", "give `overwrite` or another name");
   }
