@@ -59,7 +59,7 @@ MISTAKES = [
     ("a folder in the place of the fourth picture", {"out/f.0004.png": None}, ["render", "box.gltf", "--size", "32x18", "--frames", "1-5", "--spp", "1",
      "--overwrite", "-o", "out/f.####.png"], ["out/f.0004.png: ", "a folder is in the place", "choose another name"]),
     ("a folder in the place of the record", {"f.run.json": None}, ["render", "box.gltf", *JOB, "--overwrite"], ["f.run.json: ", "a folder is in the place"]),
-    ("a reference that tells nothing", {"plan.toml": PLAN + "[reference]\nspp = 1\n[measure]\nrepeats = 1\n"}, ["sweep", "plan.toml", "--quiet"],
+    ("a reference that tells nothing", {"plan.toml": PLAN + "[reference]\nspp = 1\n[measure]\nrepeats = 1\nmetrics = [\"fovvideovdp\"]\n"}, ["sweep", "plan.toml", "--quiet"],
      ["plan.toml: ", "the reference of box has 4 samples a pixel", "nothing better can be told", "samples would do", "go-on = true"]),
     ("a reference of no level", {"plan.toml": 'reference = "auto"\n' + PLAN + '[measure]\nmetrics = ["mse"]\n'}, ["sweep", "plan.toml", "--dry-run"],
      ["plan.toml: ", "follows a level in JOD", "fovvideovdp=9"]),
