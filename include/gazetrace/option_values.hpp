@@ -42,7 +42,7 @@ struct SizePx {
   int width = 0, height = 0;
 };
 struct FrameList {
-  std::vector<std::int32_t> frames;
+  std::vector<std::int32_t> frames;  // none: "fixations", one for each of the gaze log
 };
 // "f/2.8" or a radius in metres; 0: a pinhole.
 struct Aperture {

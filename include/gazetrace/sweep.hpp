@@ -34,6 +34,9 @@ struct SweepReference {
   FramePlan plan;
   ColorSettings color;
   std::vector<std::uint64_t> seeds;  // one for each scrambling: an even number, at least 4
+  // Rendered again with more samples, until its noise moves a score at the highest level in JOD by less than 0.1 or it
+  // has so many samples a pixel; empty: with as many as `pipeline` says.
+  std::optional<double> most_spp;
 };
 
 // A setting to be measured, ready to render. The outputs of `pipeline` are ignored.
@@ -79,6 +82,7 @@ struct SweepPlan {
   NamedValues gazes;  // names and settings in words, for the paragraph on methods
   SweepMeasure measure;
   bool restart = false;         // throws away what an earlier sweep has left in the directory
+  bool go_on = false;           // measures although a reference is known too badly for the levels that are asked for
   bool trust_files = false;     // does not compare the pictures that are there with what was written
   NamedValues common_settings;  // all options that no row varies
   NamedValues stated_settings;  // those of them that were chosen, or that decide light and sampling

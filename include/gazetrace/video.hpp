@@ -80,5 +80,8 @@ void draw_eccentricity_ring(DisplayImage& image, const PlanarView& view, const V
 // marks on which eyes keep stillest (Thaler, Schuetz, Goodale and Gegenfurtner, "What is the best fixation target?",
 // Vision Research 76, 2013).
 void draw_fixation_mark(DisplayImage& image, const Vec2d& gaze_px, double pixels_per_degree);
+// Writes a line in capital letters on a darkened ground; `dot_px`: the size of one of a letter's 5 x 7 dots. Characters
+// that are no letter of English, digit or one of .:-/%+()= stay empty.
+void draw_label(DisplayImage& image, const Vec2d& top_left_px, std::string_view text, int dot_px);
 
 }  // namespace gazetrace

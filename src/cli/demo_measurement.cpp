@@ -18,7 +18,8 @@ std::vector<std::int32_t> frame_numbers(const Job& job, const std::string& frame
   if (!frames.empty()) {
     return parse_frame_list(frames);
   }
-  return job.settings.frames ? job.settings.frames->frames : std::vector<std::int32_t>{1};
+  const bool are_named = job.settings.frames && !job.settings.frames->frames.empty();
+  return are_named ? job.settings.frames->frames : std::vector<std::int32_t>{1};
 }
 
 constexpr int kMeasuredWidthPx = 320;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program: parse, run one command, turn the one exception type into one line and an exit code.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
@@ -9,6 +11,7 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -71,8 +74,20 @@ std::vector<std::string> flags_of(const CLI::App& command) {
   return flags;
 }
 
+// The value that the command takes by its place alone, where it has the name of this flag.
+const CLI::Option* placed_option(const std::string& flag, const CLI::App& command) {
+  const auto all = command.get_options([&](const CLI::Option* option) {
+    return option->get_positional() && !option->nonpositional() && "--" + option->get_name(true) == flag;
+  });
+  return all.empty() ? nullptr : all.front();
+}
+
 // What to say of an option that the command does not have, or that stands before it.
 std::string unknown_option_text(const std::string& flag, const CLI::App& command, const std::string& words) {
+  if (const CLI::Option* placed = placed_option(flag, command)) {
+    return fmt::format("'{}' is no option: its value stands by itself, as in '{} {}'", flag, words,
+                       placed->get_type_name().empty() ? "VALUE" : placed->get_type_name());
+  }
   const std::vector<std::string> known = flags_of(command);
   const auto is_known = [&](const std::string& name) {
     return std::find(known.begin(), known.end(), name) != known.end();
@@ -174,8 +189,10 @@ int run(int argc, char** argv) {
     if (names_no_command(app)) {
       return report(parse_error_text(app, CLI::ExtrasError(app.remaining(true))), exit_bad_input);
     }
-    print_result("");
-    return app.exit(help_or_version);
+    std::ostringstream text;  // which CLI11 would write without a look at whether it arrives
+    const int code = app.exit(help_or_version, text, text);
+    print_result(text.str());
+    return code;
   } catch (const CLI::ParseError& error) {
     return report(parse_error_text(app, error), exit_bad_input);
   }

@@ -55,6 +55,18 @@ std::vector<std::string> names_within(const CommandWords& command) {
   return names;
 }
 
+// What may stand by itself after the command: the families of list, the shells of completion.
+std::vector<std::string> places_of(const CommandWords& command) {
+  std::vector<std::string> names;
+  for (const OptionWords& option : command.options) {
+    if (option.is_positional()) {
+      const ValueWords found = values_of(option);
+      names.insert(names.end(), found.names.begin(), found.names.end());
+    }
+  }
+  return names;
+}
+
 // "gazetrace render"|"gazetrace gaze"|...: what the path so far and a word make a longer path.
 std::string longer_paths(const CommandWords& program, const char* between) {
   std::string text;
@@ -80,14 +92,15 @@ std::string bash_script(const CommandWords& program) {
                               quoted(fmt::format("{}", fmt::join(found.names, " "))), found.is_file ? 1 : 0);
       }
     }
-    words += fmt::format("    {}) commands={}; options={} ;;\n", quoted(path_of(*command)),
+    words += fmt::format("    {}) commands={}; places={}; options={} ;;\n", quoted(path_of(*command)),
                          quoted(fmt::format("{}", fmt::join(names_within(*command), " "))),
+                         quoted(fmt::format("{}", fmt::join(places_of(*command), " "))),
                          quoted(fmt::format("{}", fmt::join(flags_of(*command), " "))));
   }
   return "# bash completion for gazetrace; made by 'gazetrace completion bash'\n"
          "_gazetrace() {\n"
          "  local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]} at=gazetrace i\n"
-         "  local names='' files='' commands='' options=''\n"
+         "  local names='' files='' commands='' places='' options='' before=''\n"
          "  for ((i = 1; i < COMP_CWORD; i++)); do\n"
          "    case \"$at ${COMP_WORDS[i]}\" in\n"
          "      " +
@@ -99,7 +112,8 @@ std::string bash_script(const CommandWords& program) {
          values +
          "  esac\n"
          "  if [[ -n $names$files ]]; then\n"
-         "    COMPREPLY=($(compgen -W \"$names\" -- \"$cur\"))\n"
+         "    [[ -n $names && $cur == *,* ]] && before=${cur%,*},\n"  // the last of a list
+         "    COMPREPLY=($(compgen -P \"$before\" -W \"$names\" -- \"${cur#\"$before\"}\"))\n"
          "    [[ $files == 1 ]] && COMPREPLY+=($(compgen -f -- \"$cur\"))\n"
          "    return\n"
          "  fi\n"
@@ -110,6 +124,8 @@ std::string bash_script(const CommandWords& program) {
          "    COMPREPLY=($(compgen -W \"$options\" -- \"$cur\"))\n"
          "  elif [[ -n $commands ]]; then\n"
          "    COMPREPLY=($(compgen -W \"$commands\" -- \"$cur\"))\n"
+         "  elif [[ -n $places ]]; then\n"
+         "    COMPREPLY=($(compgen -W \"$places\" -- \"$cur\"))\n"
          "  else\n"
          "    COMPREPLY=($(compgen -f -- \"$cur\"))\n"
          "  fi\n"
@@ -135,9 +151,10 @@ std::string zsh_script(const CommandWords& program) {
       for (const std::string& name : option.names) {
         options += " " + described(name, option.help);
         if (!option.value.empty() && (found.is_file || !found.names.empty())) {
-          values += fmt::format("    ({}) {}{}return ;;\n", quoted(path_of(*command) + " " + name),
-                                found.names.empty() ? "" : fmt::format("compadd -- {}; ", fmt::join(found.names, " ")),
-                                found.is_file ? "_files; " : "");
+          values += fmt::format(
+              "    ({}) {}{}return ;;\n", quoted(path_of(*command) + " " + name),
+              found.names.empty() ? "" : fmt::format("compset -P '*,'; compadd -- {}; ", fmt::join(found.names, " ")),
+              found.is_file ? "_files; " : "");
         }
       }
     }
@@ -145,13 +162,14 @@ std::string zsh_script(const CommandWords& program) {
     for (const CommandWords& one : command->commands) {
       within += " " + described(one.path.back(), one.summary);
     }
-    words += fmt::format("    ({}) commands=({}); options=({}) ;;\n", quoted(path_of(*command)), within, options);
+    words += fmt::format("    ({}) commands=({}); places=({}); options=({}) ;;\n", quoted(path_of(*command)), within,
+                         fmt::join(places_of(*command), " "), options);
   }
   return "#compdef gazetrace\n"
          "# zsh completion for gazetrace; made by 'gazetrace completion zsh'\n"
          "_gazetrace() {\n"
          "  local at=gazetrace word\n"
-         "  local -a commands options\n"
+         "  local -a commands places options\n"
          "  for word in ${words[2,CURRENT-1]}; do\n"
          "    case \"$at $word\" in\n"
          "      (" +
@@ -169,6 +187,8 @@ std::string zsh_script(const CommandWords& program) {
          "    _describe -o option options\n"
          "  elif (( $#commands )); then\n"
          "    _describe command commands\n"
+         "  elif (( $#places )); then\n"
+         "    compadd -- $places\n"
          "  else\n"
          "    _files\n"
          "  fi\n"
@@ -186,7 +206,7 @@ std::string fish_option(const CommandWords& command, const OptionWords& option) 
     line += found.is_file ? " -r -F" : " -x";
   }
   if (!found.names.empty()) {
-    line += " -a " + quoted_fish(fmt::format("{}", fmt::join(found.names, " ")));
+    line += " -a " + quoted_fish(fmt::format("(__gazetrace_names {})", fmt::join(found.names, " ")));
   }
   return line + " -d " + quoted_fish(brief(option.help)) + "\n";
 }
@@ -205,12 +225,22 @@ std::string fish_script(const CommandWords& program) {
       "    end\n"
       "  end\n"
       "  test \"$at\" = \"$argv\"\n"
+      "end\n"
+      "function __gazetrace_names\n"
+      "  set -l before (string match -r '.*,' -- (commandline -ct))\n"
+      "  for name in $argv\n"
+      "    echo \"$before$name\"\n"
+      "  end\n"
       "end\n";
   for (const CommandWords* command : all_commands(program)) {
     for (const CommandWords& within : command->commands) {
       text += fmt::format("complete -c gazetrace -f -n {} -a {} -d {}\n",
                           quoted_fish("__gazetrace_at " + path_of(*command)), within.path.back(),
                           quoted_fish(brief(within.summary)));
+    }
+    if (const std::vector<std::string> places = places_of(*command); !places.empty()) {
+      text += fmt::format("complete -c gazetrace -f -n {} -a {}\n", quoted_fish("__gazetrace_at " + path_of(*command)),
+                          quoted_fish(fmt::format("{}", fmt::join(places, " "))));
     }
     for (const OptionWords& option : command->options) {
       text += option.is_positional() ? std::string() : fish_option(*command, option);

@@ -22,12 +22,6 @@ namespace {
 
 constexpr int kMaxAttempts = 1000;
 
-std::filesystem::path temporary_name(const std::filesystem::path& path, int attempt) {
-  const std::string number = std::to_string(::getpid()) + (attempt == 0 ? "" : "-" + std::to_string(attempt));
-  std::filesystem::path name = path;
-  return name.replace_filename("." + path.stem().string() + "." + number + ".part" + path.extension().string());
-}
-
 // A file that is being written. Where the file system can hold a file without a name, it has none until it is complete,
 // so that a process that is killed leaves nothing behind; elsewhere it has a temporary name.
 class TemporaryFile {
@@ -161,9 +155,29 @@ void flush_folder_of(const std::string& path) {
 
 }  // namespace
 
-void refuse_special_file(const std::string& path) {
-  if (std::error_code problem; std::filesystem::is_other(path, problem)) {
+std::filesystem::path temporary_name(const std::filesystem::path& path, int attempt) {
+  constexpr std::size_t kLongestStem = 200;  // with what follows, a name that every file system holds
+  const std::string number = std::to_string(::getpid()) + (attempt == 0 ? "" : "-" + std::to_string(attempt));
+  std::filesystem::path name = path;
+  return name.replace_filename("." + path.stem().string().substr(0, kLongestStem) + "." + number + ".part" +
+                               path.extension().string());
+}
+
+void refuse_impossible_file(const std::string& path) {
+  constexpr std::size_t kLongestName = 255;
+  for (const std::filesystem::path& part : std::filesystem::path(path)) {
+    if (const std::size_t bytes = part.string().size(); bytes > kLongestName) {
+      throw Error(ErrorKind::input, bounded(path),
+                  "a name in it has " + std::to_string(bytes) + " bytes, and file systems hold 255",
+                  "give a shorter one");
+    }
+  }
+  std::error_code problem;
+  if (std::filesystem::is_other(path, problem)) {
     throw Error(ErrorKind::input, path, "is a device, pipe or socket, which no file replaces", "choose another name");
+  }
+  if (std::filesystem::is_directory(path, problem)) {
+    throw Error(ErrorKind::input, path, "a folder is in the place of this file", "remove it or choose another name");
   }
 }
 
@@ -177,7 +191,7 @@ bool create_file_once(const std::string& path, std::span<const std::byte> bytes)
 }
 
 void write_bytes_atomically(const std::string& path, std::span<const std::byte> bytes) {
-  refuse_special_file(path);
+  refuse_impossible_file(path);
   TemporaryFile file(path);
   file.write(bytes);
   file.flush();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <string>
 
@@ -18,8 +19,12 @@ void write_bytes_atomically(const std::string& path, std::span<const std::byte> 
 // The same for a file that another program has written under a name of its own beside `path`.
 void put_file_in_place(const std::string& temporary, const std::string& path);
 
-// A device, pipe or socket is no output: Error(input). write_bytes_atomically() asks it itself.
-void refuse_special_file(const std::string& path);
+// The name under which a file is written before it gets its own: hidden, of this process, with the same suffix.
+std::filesystem::path temporary_name(const std::filesystem::path& path, int attempt = 0);
+
+// What can be no output is Error(input): a device, pipe or socket, a folder, a name that no file system holds.
+// write_bytes_atomically() asks it itself.
+void refuse_impossible_file(const std::string& path);
 
 // The same for a file that must not replace another one: false where the name is taken, by whomever and however
 // recently. Of several writers exactly one gets true.

@@ -106,7 +106,7 @@ void check_job(const Job& asked, const JobSchema& schema) {
     throw Error(ErrorKind::usage, "`progress`", unknown_name_message("progress mode", job.progress, progress_modes));
   }
   const OutputSettings output = output_settings(job);
-  check_output_settings(output, job.frames && job.frames->frames.size() > 1);
+  check_output_settings(output, job.frames && job.frames->frames.size() != 1);
   check_output_folders(output);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "gazetrace/error.hpp"
+#include "gazetrace/gaze_events.hpp"
 #include "job/choose_frames.hpp"
 
 namespace gazetrace {
@@ -39,6 +40,63 @@ bool lasts(const GazeLog* log) {
   return log != nullptr && log->samples.size() > 1;
 }
 
+// The log's own events where it states fixations, else those of the method for its kind of recording.
+EyeEvents events_for_frames(const GazeLog& log, std::string& whose) {
+  EyeEvents events = events_of_log(log);
+  const auto is_fixation = [](const EyeEvent& event) { return event.movement == EyeMovement::fixation; };
+  whose = "the log's own";
+  if (std::none_of(events.events.begin(), events.events.end(), is_fixation)) {
+    const EventPreset& preset = default_event_preset(log);
+    events = detect_events(log, preset);
+    whose = "by " + preset.name;
+  }
+  std::erase_if(events.events, [&](const EyeEvent& event) { return !is_fixation(event); });
+  return events;
+}
+
+// The frame whose middle is nearest to that of each fixation, where it lies within it.
+std::vector<std::int32_t> fixation_frames(const JobSettings& job, const ViewInputs& inputs, std::string& decision) {
+  if (!lasts(inputs.log)) {
+    throw Error(ErrorKind::usage, "`frames`", "there is no gaze log whose fixations could be counted",
+                "give `gaze`, or name frames such as 1-100");
+  }
+  const GazeMapping mapping = gaze_mapping(job, inputs.log, inputs.taken_off_ns);
+  const std::int64_t begin_ns = mapping.event_ns.value_or(inputs.log->samples.front().t_ns);
+  const double fps = static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator);
+  // Whole frames since the video's start: frame n is at n - 1/2.
+  const auto place_of = [&](std::int64_t t_ns) {
+    const double since_ns = static_cast<double>(t_ns) - static_cast<double>(begin_ns);
+    return (since_ns * mapping.scale + static_cast<double>(mapping.offset_ns - job.start.ns)) * 1e-9 * fps;
+  };
+  const std::int64_t last =
+      inputs.camera.is_static ? kMostPlannedFrames : frames_until(static_cast<double>(inputs.camera.end_ns), job);
+  std::string whose;
+  const EyeEvents events = events_for_frames(*inputs.log, whose);
+  std::vector<std::int32_t> frames;
+  std::size_t between = 0;
+  std::size_t outside = 0;
+  for (const EyeEvent& event : events.events) {
+    const double begin = place_of(event.begin_ns);
+    const double end = place_of(event.end_ns);
+    const double frame = std::floor((begin + end) / 2) + 1;
+    if (frame < 1 || frame > static_cast<double>(last)) {
+      ++outside;
+    } else if (frame - 0.5 < begin || frame - 0.5 > end) {
+      ++between;
+    } else if (const auto number = static_cast<std::int32_t>(frame); frames.empty() || frames.back() != number) {
+      frames.push_back(number);
+    }
+  }
+  const std::string counts = fmt::format("of {} fixations ({}), {} lie between frames and {} outside of the video",
+                                         events.events.size(), whose, between, outside);
+  if (frames.empty()) {
+    throw Error(ErrorKind::input, inputs.log->source, "no fixation has a frame: " + counts,
+                "look at 'gazetrace gaze events', and check `fps`, `start` and `gaze-offset`");
+  }
+  decision = fmt::format("{} ({} frames, one for each fixation; {})", format_frame_list(frames), frames.size(), counts);
+  return frames;
+}
+
 }  // namespace
 
 bool may_follow_scene(const JobSettings& job, const CameraPath& camera, const GazeLog* log, bool is_whole) {
@@ -47,6 +105,9 @@ bool may_follow_scene(const JobSettings& job, const CameraPath& camera, const Ga
 
 // As long as the camera's path or, without one, the gaze log or, without one, the motion of the scene.
 std::vector<std::int32_t> choose_frames(const JobSettings& job, const ViewInputs& inputs, std::string& decision) {
+  if (job.frames && job.frames->frames.empty()) {
+    return fixation_frames(job, inputs, decision);
+  }
   if (job.frames) {
     decision = format_frame_list(job.frames->frames);
     return job.frames->frames;

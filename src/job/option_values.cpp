@@ -8,10 +8,13 @@
 #include <limits>
 #include <system_error>
 
+#include "core/text.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
 namespace {
+
+constexpr std::string_view kFixations = "fixations";  // of `frames`
 
 [[noreturn]] void reject(std::string_view text, const std::string& place, std::string_view wanted) {
   throw Error(ErrorKind::usage, place, fmt::format("'{}' is not {}", text, wanted));
@@ -220,6 +223,10 @@ void parse_value(std::string_view text, const std::string& place, SizePx& value)
 }
 
 void parse_value(std::string_view text, const std::string& place, FrameList& value) {
+  if (trim(text) == kFixations) {
+    value.frames.clear();
+    return;
+  }
   try {
     value.frames = parse_frame_list(text);
   } catch (const Error& error) {
@@ -373,7 +380,7 @@ std::string format_value(const SizePx& value) {
 }
 
 std::string format_value(const FrameList& value) {
-  return format_frame_list(value.frames);
+  return value.frames.empty() ? std::string(kFixations) : format_frame_list(value.frames);
 }
 
 std::string format_value(const FrameRate& value) {

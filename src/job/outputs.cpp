@@ -15,6 +15,7 @@
 #include <set>
 #include <system_error>
 
+#include "core/atomic_file.hpp"
 #include "core/picture_module.hpp"
 #include "gazetrace/error.hpp"
 #include "job/changed_inputs.hpp"
@@ -153,6 +154,11 @@ OutputSettings output_settings(const JobSettings& job) {
 }
 
 void check_output_folders(const OutputSettings& output) {
+  for (const std::string& pattern : {output.exr.pattern, output.display.pattern, output.map_pattern}) {
+    if (!pattern.empty()) {
+      refuse_impossible_file(frame_file_name(pattern, 1, false));
+    }
+  }
   for (const fs::path& folder : output_folders(output)) {
     check_folder(folder);
   }

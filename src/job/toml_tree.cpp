@@ -60,6 +60,34 @@ void refuse_deep_keys(std::string_view text, const std::string& path) {
   }
 }
 
+// The line where a quote is opened that nothing closes: on its line or, of three quotes, at all; 0: none.
+int line_of_open_quote(std::string_view text) {
+  int line = 1;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char quote = text[at];
+    line += quote == '\n' ? 1 : 0;
+    if (quote == '#') {
+      at = std::min(text.find('\n', at), text.size()) - 1;
+    }
+    if (quote != '"' && quote != '\'') {
+      continue;
+    }
+    const int opened = line;
+    const bool is_long = text.substr(at, 3) == std::string(3, quote);
+    const std::string closing(is_long ? 3 : 1, quote);
+    at += closing.size();
+    while (at < text.size() && text.substr(at, closing.size()) != closing && (is_long || text[at] != '\n')) {
+      line += text[at] == '\n' ? 1 : 0;
+      at += quote == '"' && text[at] == '\\' ? 2 : 1;
+    }
+    if (at >= text.size() || text.substr(at, closing.size()) != closing) {
+      return opened;
+    }
+    at += closing.size() - 1;
+  }
+  return 0;
+}
+
 }  // namespace
 
 const TomlNode* TomlNode::find(std::string_view key) const {
@@ -73,6 +101,10 @@ TomlNode parse_toml(std::string_view text, const std::string& path) {
   try {
     return tree_of(toml::parse(text));
   } catch (const toml::parse_error& error) {
+    if (const int line = line_of_open_quote(text); line > 0 && line <= static_cast<int>(error.source().end.line)) {
+      throw Error(ErrorKind::input, fmt::format("{}:{}", path, line), "a quote is opened and not closed",
+                  "close it on the same line");
+    }
     throw Error(ErrorKind::input, fmt::format("{}:{}", path, error.source().begin.line),
                 std::string(error.description()), "this is not TOML");
   }

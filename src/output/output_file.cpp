@@ -18,15 +18,15 @@ namespace fs = std::filesystem;
 
 struct Place {
   std::string identity;  // one for all names of a file: links to it and other ways of writing its path
-  bool exists = false, is_folder = false;
+  bool exists = false;
 };
 
 Place place_of(const std::string& path) {
   struct stat state {};
   if (::stat(path.c_str(), &state) != 0) {
-    return {fs::absolute(path).lexically_normal().string(), false, false};
+    return {fs::absolute(path).lexically_normal().string(), false};
   }
-  return {fmt::format("{}:{}", state.st_dev, state.st_ino), true, S_ISDIR(state.st_mode)};
+  return {fmt::format("{}:{}", state.st_dev, state.st_ino), true};
 }
 
 // Of files, and of the frames that patterns stand for.
@@ -73,10 +73,7 @@ void check_outputs(std::vector<std::string> outputs, const std::vector<std::stri
   std::set<std::string> written;
   for (const std::string& output : outputs) {
     const Place place = place_of(output);
-    if (place.is_folder) {
-      throw Error(ErrorKind::input, output, "is a folder, not a file", "give another name");
-    }
-    refuse_special_file(output);
+    refuse_impossible_file(output);
     if (read.contains(place.identity)) {
       throw Error(ErrorKind::usage, output, "this output would replace an input", "give another name");
     }

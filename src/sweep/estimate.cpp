@@ -52,7 +52,11 @@ SweepEstimate estimate_sweep(const SweepPlan& plan) {
     row.row.label = reference.key;
     row.row.scene = plan.scenes[reference.scene].name;
     row.plan = pictures[r];
-    add(row, reference.pipeline.foveation.spp.value_or(kUsualSpp), static_cast<int>(reference.seeds.size()));
+    const auto scramblings = static_cast<double>(reference.seeds.size());
+    const double spp =
+        reference.most_spp ? *reference.most_spp / scramblings : reference.pipeline.foveation.spp.value_or(kUsualSpp);
+    row.row.label += reference.most_spp ? ", at most" : "";
+    add(row, spp, static_cast<int>(reference.seeds.size()));
     estimate.rows.back().role = "reference";
   }
   std::set<std::string> known;

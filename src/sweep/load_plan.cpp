@@ -11,6 +11,7 @@
 #include "gazetrace/error.hpp"
 #include "gazetrace/resolve.hpp"
 #include "job/confine.hpp"
+#include "sweep/certainty.hpp"
 #include "sweep/plan_measure.hpp"
 #include "sweep/row_checks.hpp"
 #include "sweep/row_jobs.hpp"
@@ -28,6 +29,11 @@ class PlanMaker {
     plan.plan_file = file_.path;
     plan.varied = file_.varied;
     plan.measure = sweep_measure(file_, request_.threads);
+    plan.go_on = file_.reference.go_on;
+    if (file_.reference.is_auto && !highest_jod(plan.measure)) {
+      throw Error(ErrorKind::input, file_.path, "a reference of \"auto\" follows a level in JOD, and there is none",
+                  "measure fovvideovdp, and give it a level: quality = [\"fovvideovdp=9\"]");
+    }
     for (std::size_t s = 0; s < file_.scenes.size(); ++s) {
       add_scene(s);
     }
@@ -168,6 +174,11 @@ class PlanMaker {
       reference.seeds.push_back(file_.reference.seed + static_cast<std::uint64_t>(i));
     }
     reference.digest = digest_of(job, frames);
+    if (file_.reference.is_auto) {
+      reference.most_spp = file_.reference.most_spp;
+      reference.digest =
+          digest_settings({{"reference", reference.digest}, {"auto", fmt::format("{}", *reference.most_spp)}});
+    }
     reference.key = scene.name + "-" +
                     digest_settings({{"reference", reference.digest},
                                      {"seeds", fmt::format("{}", fmt::join(reference.seeds, " "))}})

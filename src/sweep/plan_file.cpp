@@ -22,6 +22,7 @@ namespace gazetrace {
 namespace {
 
 constexpr const char* kScale = "resolution-scale";
+constexpr const char* kAuto = "auto";  // as many samples as a reference needs
 constexpr std::array kTables{"title",   "common",    "scene",     "gaze",   "grid",
                              "setting", "published", "reference", "measure"};
 // Options that decide the scene and its tree, and may therefore not differ between two rows of one scene.
@@ -282,12 +283,21 @@ void read_reference(const TomlNode& root, const RenderOptions& options, SweepFil
   if (table == nullptr) {
     return;
   }
-  checked_kind(*table, TomlNode::Kind::table, file.path, "'reference' is a table; write [reference]");
+  if (table->kind == TomlNode::Kind::scalar && table->text == kAuto) {
+    file.reference.is_auto = true;
+    return;
+  }
+  checked_kind(*table, TomlNode::Kind::table, file.path,
+               "'reference' is a table or \"auto\"; write [reference], or reference = \"auto\" at the top");
   OptionSchema<SweepFileReference> own;
   own.value("--scramblings", &SweepFileReference::scramblings, "N", "");
   own.value("--seed", &SweepFileReference::seed, "N", "");
+  own.value("--most-spp", &SweepFileReference::most_spp, "SPP", "");
+  own.flag("--go-on", &SweepFileReference::go_on, "");
   for (const auto& [key, value] : table->members) {
-    if (own.find(key) != nullptr) {
+    if (key == "spp" && value.kind == TomlNode::Kind::scalar && value.text == kAuto) {
+      file.reference.is_auto = true;
+    } else if (own.find(key) != nullptr) {
       TomlNode alone;
       alone.members.push_back({key, value});
       read_table(own, alone, file.reference, file);
@@ -299,6 +309,10 @@ void read_reference(const TomlNode& root, const RenderOptions& options, SweepFil
     refuse(file.places["scramblings"],
            fmt::format("{} scramblings do not make two halves of at least two each", file.reference.scramblings),
            "give an even number from 4 on");
+  }
+  if (!(file.reference.most_spp >= 1 && file.reference.most_spp <= 1e9)) {
+    refuse(file.places["most-spp"], fmt::format("{} samples a pixel are no bound", file.reference.most_spp),
+           "give a number from 1 on");
   }
 }
 

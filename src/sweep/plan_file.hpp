@@ -53,6 +53,9 @@ struct SweepFileReference {
   std::vector<Assignment> options;
   int scramblings = 4;
   std::uint64_t seed = 1000003;
+  bool is_auto = false;    // spp = "auto"
+  double most_spp = 8192;  // of all scramblings together
+  bool go_on = false;
 };
 
 struct SweepFileMeasure {

@@ -14,6 +14,8 @@
 namespace gazetrace {
 namespace {
 
+constexpr int kFirstSppOfAuto = 16;  // of each scrambling: enough to tell how many it will take
+
 // Options that do not affect a uniform frame. The preset is among them, although it sets more than the sampling,
 // because its effective values are taken one by one.
 bool is_of_sampling_or_gaze(const Option& option) {
@@ -125,6 +127,9 @@ Job reference_job(const SweepRequest& request, const SweepFileScene& scene, cons
         std::pair("accumulate", "off"), std::pair("russian-roulette", "false"), std::pair("clamp-indirect", "0"),
         std::pair("learn-light", "false")}) {
     set_option(job, option, {value}, {Origin::file, {}, {}, {}}, option, schema);
+  }
+  if (request.file.reference.is_auto) {
+    set_option(job, "spp", {std::to_string(kFirstSppOfAuto)}, {Origin::file, {}, {}, {}}, "spp", schema);
   }
   assign(job, request.file.reference.options, schema);
   check_reference_has_no_target(job, request.file.reference.options);

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -18,6 +19,7 @@
 
 #include "compare/eccentricity_bands.hpp"
 #include "core/parallel.hpp"
+#include "sweep/certainty.hpp"
 #include "sweep/measure.hpp"
 #include "sweep/reference.hpp"
 #include "sweep/scene_rows.hpp"
@@ -33,6 +35,16 @@ constexpr double kLeastSpp = 1.0 / 64;
 std::string digest_of_reference(const SweepReference& reference) {
   return digest_settings(
       {{"reference", reference.digest}, {"seeds", fmt::format("{}", fmt::join(reference.seeds, " "))}});
+}
+
+// A reference of its own, with so many samples in each scrambling.
+SweepReference with_samples(const SweepReference& planned, double each_spp) {
+  SweepReference reference = planned;
+  const std::string spp = fmt::format("{:.0f}", each_spp);
+  reference.key += "-" + spp;
+  reference.digest = digest_settings({{"reference", planned.digest}, {"spp", spp}});
+  reference.pipeline.foveation.spp = each_spp;
+  return reference;
 }
 
 class SceneSweep {
@@ -94,37 +106,89 @@ class SceneSweep {
   }
 
   void prepare_references(const Scene& scene) {
-    for (const SweepReference& reference : plan_.references) {
-      if (is_reference_of_mine(reference)) {
-        references_.emplace(reference.key, &reference);
-        colors_.emplace(reference.key, ColorPipeline(reference.color));
-        certified_.emplace(reference.key,
-                           ensure_reference(*tracer_, scene, reference, colors_.at(reference.key), plan_.directory,
-                                            scope_.kind == Scope::Kind::task, observer_));
+    for (const SweepReference& planned : plan_.references) {
+      if (is_reference_of_mine(planned)) {
+        settle(planned, [&](const SweepReference& reference) {
+          return std::optional(ensure_reference(*tracer_, scene, reference, colors_.at(planned.key), plan_.directory,
+                                                scope_.kind == Scope::Kind::task, observer_));
+        });
       }
     }
   }
 
   void find_references() {
     std::shared_ptr<const Scene> scene;
-    for (const SweepReference& reference : plan_.references) {
-      if (!is_reference_of_mine(reference)) {
+    for (const SweepReference& planned : plan_.references) {
+      if (!is_reference_of_mine(planned)) {
         continue;
       }
-      std::optional<CertifiedReference> certified = finished_reference(reference, plan_.directory);
-      if (!certified) {
-        scope_.missing.push_back("reference " + reference.key);
-        continue;
-      }
-      certified->pictures = reference.plan.frames.size();
-      if (scene_decides_pictures(reference)) {
-        scene = scene ? scene : plan_.scenes[scene_].load();
-        certified->pictures = reference_pictures(reference, *scene).size();
-      }
-      references_.emplace(reference.key, &reference);
-      colors_.emplace(reference.key, ColorPipeline(reference.color));
-      certified_.emplace(reference.key, std::move(*certified));
+      settle(planned, [&](const SweepReference& reference) {
+        std::optional<CertifiedReference> certified = finished_reference(reference, plan_.directory);
+        if (!certified) {
+          scope_.missing.push_back("reference " + reference.key);
+          return certified;
+        }
+        certified->pictures = reference.plan.frames.size();
+        if (scene_decides_pictures(reference)) {
+          scene = scene ? scene : plan_.scenes[scene_].load();
+          certified->pictures = reference_pictures(reference, *scene).size();
+        }
+        return certified;
+      });
     }
+  }
+
+  // Takes a reference once it is known well enough or has as many samples as it may have, and says how well that is.
+  // `make` renders or finds it. Every process that is at the same sweep comes to the same number of samples.
+  template <class Make>
+  void settle(const SweepReference& planned, const Make& make) {
+    colors_.emplace(planned.key, ColorPipeline(planned.color));
+    const auto scramblings = static_cast<double>(planned.seeds.size());
+    std::optional<double> each_spp = planned.pipeline.foveation.spp;
+    for (;;) {
+      const SweepReference reference = planned.most_spp ? with_samples(planned, *each_spp) : planned;
+      const std::optional<CertifiedReference> certified = make(reference);
+      if (!certified) {
+        return;
+      }
+      std::vector<ResultFloor> floors = floors_of(planned.key, reference, *certified);
+      const std::string known = known_to(plan_.measure, floors);
+      tell(fmt::format("reference {}: {:.0f} samples a pixel{}{}", reference.key, certified->spp,
+                       known.empty() ? "" : "; its halves differ by ", known));
+      const std::optional<double> more =
+          planned.most_spp ? next_samples(plan_.measure, floors, certified->spp, *planned.most_spp) : std::nullopt;
+      if (more) {
+        each_spp = std::ceil(*more / scramblings);
+        continue;
+      }
+      if (scope_.kind != Scope::Kind::merge) {
+        check_levels(plan_, reference, floors, certified->spp);
+      }
+      references_.emplace(planned.key, reference);
+      certified_.emplace(planned.key, *certified);
+      floors_.emplace(planned.key, std::move(floors));
+      return;
+    }
+  }
+
+  // Those of the gazes whose rows are measured here.
+  [[nodiscard]] std::vector<ResultFloor> floors_of(const std::string& key, const SweepReference& reference,
+                                                   const CertifiedReference& certified) const {
+    std::vector<ResultFloor> floors;
+    std::set<std::string> done;
+    for (const PlannedRow& row : rows_) {
+      if (row.row.reference != key || !is_mine(row) || !done.insert(row.row.gaze).second) {
+        continue;
+      }
+      const FramePlan& plan = plan_.tests[row.test].plan;
+      const std::string digest = digest_settings(
+          {{"reference", digest_of_reference(reference)}, {"scores", scoring_digest(plan_.measure, row.row.frames)}});
+      const ComparisonSettings comparison =
+          comparison_of(plan_.measure.comparison, plan, row.row.frames, row.pipeline.fps);
+      floors.push_back({row.row.gaze, ensure_floor(certified, colors_.at(key), comparison, row.row.frames, digest),
+                        band_shares(row.row, plan), event_shares(row.row.frames)});
+    }
+    return floors;
   }
 
   void measure_all() {
@@ -147,7 +211,7 @@ class SceneSweep {
   // in a longer plan, unless that plan has further rows with these pixels.
   [[nodiscard]] std::string key_of(const std::vector<const PlannedRow*>& rows) const {
     NamedValues parts{{"pixels", rows.front()->digest},
-                      {"reference", digest_of_reference(*references_.at(rows.front()->row.reference))},
+                      {"reference", digest_of_reference(references_.at(rows.front()->row.reference))},
                       {"seed", std::to_string(rows.front()->pipeline.trace.seed)},
                       {"threads", threads_in_key(*rows.front())},
                       {"warm-up", std::to_string(plan_.measure.warm_up)}};
@@ -343,24 +407,12 @@ class SceneSweep {
       ResultReference result;
       result.scene = plan_.scenes[scene_].name;
       result.key = key;
-      result.directory = reference_folder(*reference);
+      result.directory = reference_folder(reference);
       result.png = result.directory + "/reference.####.png";
       result.spp = certified.spp;
       result.pictures = certified.pictures;
-      result.seeds = reference->seeds;
-      std::set<std::string> done;
-      for (const PlannedRow& row : rows_) {
-        if (row.row.reference == key && done.insert(row.row.gaze).second) {
-          const FramePlan& plan = plan_.tests[row.test].plan;
-          const std::string digest = digest_settings({{"reference", digest_of_reference(*reference)},
-                                                      {"scores", scoring_digest(plan_.measure, row.row.frames)}});
-          const ComparisonSettings comparison =
-              comparison_of(plan_.measure.comparison, plan, row.row.frames, row.pipeline.fps);
-          result.floors.push_back({row.row.gaze,
-                                   ensure_floor(certified, colors_.at(key), comparison, row.row.frames, digest),
-                                   band_shares(row.row, plan), event_shares(row.row.frames)});
-        }
-      }
+      result.seeds = reference.seeds;
+      result.floors = floors_.at(key);
       measured_.references.push_back(std::move(result));
     }
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -403,9 +455,10 @@ class SceneSweep {
   SceneRows rows_;
   std::set<const PlannedRow*> of_others_;  // of a task: rows that it does not measure
   PathTracer* tracer_ = nullptr;
-  std::map<std::string, const SweepReference*> references_;
+  std::map<std::string, SweepReference> references_;  // as they were rendered
   std::map<std::string, ColorPipeline> colors_;
   std::map<std::string, CertifiedReference> certified_;
+  std::map<std::string, std::vector<ResultFloor>> floors_;
   std::map<std::size_t, StoredRun> costs_;
   std::set<std::string> warm_;
 };

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 #include "gazetrace/video.hpp"
@@ -45,6 +47,31 @@ void draw_disc(DisplayImage& image, const Vec2d& middle, double radius_px, const
       blend(image, x, y, color, coverage);
     }
   });
+}
+
+// Capital letters of 5 x 7 dots, the rows from the top, the left dot of each in its highest bit.
+constexpr int kGlyphWidth = 5;
+constexpr int kGlyphHeight = 7;
+struct Glyph {
+  char letter;
+  std::uint64_t dots;
+};
+constexpr Glyph kGlyphs[] = {
+    {'%', 0x672222273}, {'(', 0x088842082}, {')', 0x208210888}, {'+', 0x0084F9080}, {'-', 0x0000F8000},
+    {'.', 0x00000018C}, {'/', 0x042222210}, {'0', 0x3A75AD72E}, {'1', 0x11842108E}, {'2', 0x3A213221F},
+    {'3', 0x78217043E}, {'4', 0x08CA97C42}, {'5', 0x7E1E0862E}, {'6', 0x1910F462E}, {'7', 0x7C2222108},
+    {'8', 0x3A317462E}, {'9', 0x3A317844C}, {':', 0x018C03180}, {'=', 0x001F07C00}, {'A', 0x3A31FC631},
+    {'B', 0x7A31F463E}, {'C', 0x3A308422E}, {'D', 0x7A318C63E}, {'E', 0x7E10F421F}, {'F', 0x7E10F4210},
+    {'G', 0x3A30BC62F}, {'H', 0x4631FC631}, {'I', 0x38842108E}, {'J', 0x1C4210A4C}, {'K', 0x4654C5251},
+    {'L', 0x42108421F}, {'M', 0x4775AC631}, {'N', 0x47359C631}, {'O', 0x3A318C62E}, {'P', 0x7A31F4210},
+    {'Q', 0x3A318D64D}, {'R', 0x7A31F5251}, {'S', 0x3E107043E}, {'T', 0x7C8421084}, {'U', 0x46318C62E},
+    {'V', 0x46318C544}, {'W', 0x4631AD771}, {'X', 0x462A22A31}, {'Y', 0x462A21084}, {'Z', 0x7C222221F}};
+
+std::uint64_t dots_of(char letter) {
+  const int capital = std::toupper(static_cast<unsigned char>(letter));
+  const Glyph* const found =
+      std::find_if(std::begin(kGlyphs), std::end(kGlyphs), [&](const Glyph& glyph) { return glyph.letter == capital; });
+  return found == std::end(kGlyphs) ? 0 : found->dots;
 }
 
 // An orthonormal pair across a direction.
@@ -119,6 +146,31 @@ void draw_fixation_mark(DisplayImage& image, const Vec2d& gaze_px, double pixels
     blend(image, x, y, kWhite, in_cross * in_disc);
   });
   draw_disc(image, gaze_px, inner_px, kBlack);
+}
+
+void draw_label(DisplayImage& image, const Vec2d& top_left_px, std::string_view text, int dot_px) {
+  const auto fill = [&](int left, int top, int width, int height, const Rgb8Color& color, double coverage) {
+    for (int y = std::max(top, 0); y < std::min(top + height, image.height_px); ++y) {
+      for (int x = std::max(left, 0); x < std::min(left + width, image.width_px); ++x) {
+        blend(image, x, y, color, coverage);
+      }
+    }
+  };
+  constexpr int kMargin = 2;  // dots of the ground on each side
+  const int step = (kGlyphWidth + 1) * dot_px;
+  const int left = static_cast<int>(std::lround(top_left_px.x));
+  const int top = static_cast<int>(std::lround(top_left_px.y));
+  fill(left, top, static_cast<int>(text.size()) * step + (2 * kMargin - 1) * dot_px,
+       (kGlyphHeight + 2 * kMargin) * dot_px, kBlack, 0.6);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const std::uint64_t dots = dots_of(text[i]);
+    for (int dot = 0; dot < kGlyphWidth * kGlyphHeight; ++dot) {
+      if ((dots >> static_cast<unsigned>(kGlyphWidth * kGlyphHeight - 1 - dot) & 1U) != 0) {
+        fill(left + kMargin * dot_px + static_cast<int>(i) * step + dot % kGlyphWidth * dot_px,
+             top + (kMargin + dot / kGlyphWidth) * dot_px, dot_px, dot_px, kWhite, 1);
+      }
+    }
+  }
 }
 
 }  // namespace gazetrace

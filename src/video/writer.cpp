@@ -32,13 +32,6 @@ std::string suffix_of(const std::string& path) {
   return to_lower(fs::path(path).extension().string());
 }
 
-std::string temporary_name(const std::string& path) {
-  const fs::path name(path);
-  return (name.parent_path() /
-          ("." + name.stem().string() + "." + std::to_string(::getpid()) + ".part" + name.extension().string()))
-      .string();
-}
-
 // FFV1 keeps RGB; H.264 and HEVC store luma, and two color differences at half the resolution.
 std::vector<std::string> arguments_of(const std::string& output, int width_px, int height_px,
                                       const VideoSettings& settings) {
@@ -79,7 +72,7 @@ std::vector<std::string> arguments_of(const std::string& output, int width_px, i
   if (!settings.comment.empty()) {
     add({"-metadata", "comment=" + settings.comment});
   }
-  add({output});
+  add({fs::absolute(output).string()});  // of a relative one ffmpeg takes what stands before a colon for a protocol
   return list;
 }
 
@@ -267,7 +260,7 @@ VideoWriter::VideoWriter(const std::string& path, int width_px, int height_px, c
     : impl_(std::make_unique<Impl>()) {
   check_video_settings(path, settings);
   impl_->path = path;
-  impl_->temporary = temporary_name(path);
+  impl_->temporary = temporary_name(path).string();
   impl_->program = settings.program;
   impl_->width_px = width_px;
   impl_->height_px = height_px;

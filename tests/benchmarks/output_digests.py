@@ -89,6 +89,7 @@ at = [0.5, 0.5]
 region-samples = [[4, 2, 1], [8, 4, 2]]
 filter = ["linear", "guided"]
 [reference]
+go-on = true
 spp = 16
 [measure]
 repeats = 2

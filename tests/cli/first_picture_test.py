@@ -68,6 +68,35 @@ class FirstPicture(harness.CliTest):
             self.assertNotIn("dark", said)
             self.assertIn("exposure: ", said)
 
+    def test_a_sweep_of_the_room_says_early_what_it_can_tell(self):
+        self.write("room.gltf", json.dumps(room_gltf()))
+        plan = ('{}[common]\nsize = "32x20"\nscreen-px = [32, 20]\nscreen-ppd = 8\nframes = "1"\n[[scene]]\nname = "room"\npath = "room.gltf"\n'
+                '[[gaze]]\nname = "middle"\nat = [0.5, 0.5]\n[grid]\nspp = [1]\n{}[measure]\nrepeats = 2\nmetrics = ["fovvideovdp"]\nbaselines = ["none"]\n'
+                'controls = false\nefficiency-spp = 0\nquality = ["fovvideovdp=9"]\n')
+        self.write("plan.toml", plan.format("", "[reference]\nspp = 1\n"))
+        refused = self.run_program("sweep", "plan.toml", "-o", "out")
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        *told, line = refused.stderr.splitlines()
+        self.assertIn("its halves differ by fovvideovdp", told[-1])
+        self.assertNotIn("round 1", refused.stderr)
+        for words in ("plan.toml: ", "reference of room has 4 samples a pixel", "nothing better can be told", "levels are 9", "samples would do", "go-on = true"):
+            self.assertIn(words, line)
+        self.write("plan.toml", plan.format("", "[reference]\nspp = 1\ngo-on = true\n"))
+        self.assertIn("round 2", self.run_ok("sweep", "plan.toml", "-o", "out").stderr)
+        # As many samples as it takes, and no more than it may.
+        for most in (100, 2048):
+            self.write("plan.toml", plan.format("", f'[reference]\nspp = "auto"\nmost-spp = {most}\ngo-on = true\n'))
+            self.run_ok("sweep", "plan.toml", "-o", f"auto-{most}", "--quiet")
+            reference = json.loads((self.folder / f"auto-{most}/results.json").read_text())["scenes"][0]["reference"]
+            self.assertTrue(64 < reference["spp"] <= most, reference)
+            again = self.run_ok("sweep", "plan.toml", "-o", f"auto-{most}")
+            self.assertNotIn("scrambling", again.stderr)
+        self.write("plan.toml", plan.format('reference = "auto"\n', ""))
+        dry = self.run_ok("sweep", "plan.toml", "--dry-run")
+        self.assertIn("two repeats give no interval", dry.stderr)
+        row = next(line.split() for line in dry.stdout.splitlines() if line.startswith("reference"))
+        self.assertEqual(int(row[2]) * int(row[3]), 8192 * 32 * 20)
+
     def test_a_dark_picture_says_so(self):
         self.write("room.gltf", json.dumps(room_gltf(0.12)))
         for bits in ("8", "16"):

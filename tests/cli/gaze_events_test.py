@@ -149,6 +149,25 @@ class GazeTools(harness.CliTest):
                 self.assertLessEqual(float(row["mean_velocity_deg_s"]), float(row["peak_velocity_deg_s"]))
                 self.assertRegex(row["duration_ms"], r"^\d+(\.\d{1,3})?$")
 
+    def test_one_frame_for_each_fixation(self):
+        """Fixations at 0..196 and 220..396 ms, by the log and by detection; frame n of r a second is at (n - 1/2) / r."""
+        screen = ["--screen-cm", "40,30", "--screen-distance-cm", "60"]
+        job = ["box.gltf", "--gaze", "log.asc", *screen, "--frames", "fixations"]
+        stated = eyelink()
+        without = "\n".join(line for line in stated.splitlines() if not line.startswith(("EFIX", "ESACC"))) + "\n"
+        for text, whose in ((stated, "the log's own"), (without, "by ivt")):
+            self.write("log.asc", text)
+            for fps, frames in (("25", [3, 8]), ("50", [5, 16]), ("2", [1])):  # 250 ms lies in the second alone
+                result = self.run_ok("plan", *job, "--size", "64x48", "--fps", fps, "--json")
+                self.assertEqual([frame["frame"] for frame in json.loads(result.stdout)["frames"]], frames, (whose, fps))
+            said = self.run_ok("render", *job, "--size", "16x12", "--fps", "25", "--spp", "1", "-o", "f.####.png", "--overwrite").stderr
+            self.assertIn("one for each fixation", said)
+            self.assertIn(whose, said)
+            self.assertEqual([name for name in self.files() if name.endswith(".png")], ["f.0003.png", "f.0008.png"])
+        self.write("job.toml", 'scene = "box.gltf"\ngaze = "log.asc"\nframes = "fixations"\nsize = "64x48"\nfps = 25\n')
+        self.assertIn('frames = "fixations"', self.run_ok("render", "--config", "job.toml", "--print-config").stdout)
+        self.assert_refused(["plan", *job, "--size", "64x48", "--fps", "0.1"], ["no fixation has a frame", "--fps"])
+
     def test_detection_that_gives_nonsense_says_so(self):
         """Noise of 0.3 degrees at 300 Hz: hundreds of saccades, where the truth has a hundred."""
         self.run_ok("gaze", "synth", "-o", "log.csv", "--noise", "0.3", "--rate", "300", "--duration", "20s")

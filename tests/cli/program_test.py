@@ -3,6 +3,7 @@
 
 import csv
 import json
+import math
 import os
 import re
 import shutil
@@ -94,6 +95,12 @@ class Talk(harness.CliTest):
         self.assertEqual(complete("gaze", "measure", "--tab"), ["--tables"])
         self.assertIn("report", complete("gaze", ""))
         self.assertIn("--config", complete("plan", "--conf"))
+        # What stands by itself, of a family that another command names, and after a comma.
+        self.assertEqual(complete("completion", ""), ["bash", "zsh", "fish"])
+        self.assertEqual(complete("list", "scr"), ["screens"])
+        self.assertIn("ivt-hmd", complete("gaze", "events", "--method", ""))
+        self.assertEqual(complete("compare", "--metrics", "mse,fli"), ["mse,flicker", "mse,flip"])
+        self.assertEqual(complete("render", "--aov", "depth,albedo,nor"), ["depth,albedo,normal"])
 
     def test_completion_offers_each_name_once(self):
         names = re.search(r"'gazetrace render --sampling'\) names='([^']*)'", self.run_ok("completion", "bash").stdout).group(1).split()
@@ -148,6 +155,28 @@ class Talk(harness.CliTest):
         for name, members in families.items():
             self.assertTrue(members, name)
             self.assertIn(members[0]["name"], self.run_ok("list", name).stdout)
+
+    def test_screens_are_listed_with_their_numbers(self):
+        screens = {screen["name"]: screen for screen in json.loads(self.run_ok("list", "screens", "--json").stdout)["screens"]}
+        for name, screen in screens.items():
+            self.assertIn(f"{screen['width_px']}x{screen['height_px']}", screen["description"], name)
+            wide, half_cm = screen["width_px"], screen["width_cm"] / 2
+            self.assertAlmostEqual(screen["width_deg"], 2 * math.degrees(math.atan(half_cm / screen["distance_cm"])))
+            self.assertAlmostEqual(screen["pixels_per_degree"], wide / 2 / math.degrees(half_cm / screen["distance_cm"]))
+        # By the sources that the list names: pixels of one eye, pixels a degree, field, rate.
+        for name, numbers in {"quest-3": (2064, 2208, 25, [110, 96], 120), "quest-pro": (1800, 1920, 22, [106, 96], 90),
+                              "varjo-xr-4": (3840, 3744, 51, [120, 105], 90), "vision-pro": (3660, 3200, 44.4, [100], 100),
+                              "index": (1440, 1600, 15, [130], 144)}.items():
+            screen = screens[name]
+            self.assertEqual((screen["width_px"], screen["height_px"]), numbers[:2])
+            self.assertAlmostEqual(screen["pixels_per_degree"], numbers[2])
+            self.assertEqual((screen["headset"]["field_deg"], screen["headset"]["rate_hz"]), numbers[3:])
+            self.assertTrue(screen["headset"]["source"])
+        # FovVideoVDP's htc_vive_pro: a flat screen with 110 degrees over its diagonal.
+        vive = screens["vive-pro-eye"]
+        diagonal_cm = math.hypot(vive["width_cm"], vive["height_cm"])
+        self.assertAlmostEqual(2 * math.degrees(math.atan(diagonal_cm / 2 / vive["distance_cm"])), 110)
+        self.run_ok("plan", "box.gltf", "--size", "64x68", "--screen", "quest-3", "--gaze-at", "0.5,0.5")
 
     def test_every_listed_name_is_accepted(self):
         families = json.loads(self.run_ok("list", "--json").stdout)

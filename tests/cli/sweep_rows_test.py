@@ -23,6 +23,7 @@ name = "left"
 at = [0.2, 0.5]
 SETTINGS
 [reference]
+go-on = true
 spp = 4
 [measure]
 repeats = 2

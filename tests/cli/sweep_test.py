@@ -34,6 +34,7 @@ at = [0.2, 0.5]
 [grid]
 region-samples = [[16, 4, 4], [8, 2, 1]]
 [reference]
+go-on = true
 spp = 16
 [measure]
 repeats = 2
@@ -253,7 +254,7 @@ class Sweep(harness.CliTest):
         dropped = ('name = "lost', 'name = "san', 'name = "side', 'name = "corner', 'scene = "lost', 'scene = "san')
         text = "\n".join(part for part in parts if not any(word in part for word in dropped))
         width, height = 256, 144
-        for old, new in (('"3840x2160"', f'"{width}x{height}"'), ("../../shared", str(harness.SHARED)), ("spp = 256", "spp = 8"),
+        for old, new in (('"3840x2160"', f'"{width}x{height}"'), ('"data/kiara', f'"{harness.SHARED}/hdri/kiara'), ('"data/', f'"{harness.SHARED}/scenes/'), ("spp = 256", "go-on = true\nspp = 8"),
                          ("repeats = 3", 'repeats = 1\ncontrols = false\npictures = "none"'),
                          ("uniform-rates = [1, 4, 8]", "")):
             self.assertIn(old, text)

@@ -116,6 +116,22 @@ class Video(harness.CliTest):
         self.assertNotIn("viewers", result.stdout)
 
     @NEEDS_FFMPEG
+    def test_labels_say_what_is_shown(self):
+        """White dots on a dark ground in the corner of each sequence, of the letters and nothing else."""
+        self.sequence("a", 96, 64, 1, lambda n, x, y: (100, 100, 100))
+        self.sequence("b", 96, 64, 1, lambda n, x, y: (100, 100, 100))
+        self.run_ok("video", "a.####.png", "b.####.png", "-o", "a:b.mkv", "--codec", "ffv1", "--fps", "24", "--labels", "L, t-")
+        frame = self.pixels("./a:b.mkv", 192, 64)[0]
+        white = {(i // 3 % 192, i // 3 // 192) for i in range(0, len(frame), 3) if frame[i:i + 3] == b"\xff\xff\xff"}
+        column, row = 4 + 2, 4 + 2
+        letter_l = {(column, row + y) for y in range(7)} | {(column + x, row + 6) for x in range(5)}
+        column += 96
+        letter_t = {(column + x, row) for x in range(5)} | {(column + 2, row + y) for y in range(7)}
+        dash = {(column + 6 + x, row + 3) for x in range(5)}
+        self.assertEqual(white, letter_l | letter_t | dash)
+        self.assert_refused(["video", "a.####.png", "-o", "c.mkv", "--fps", "24", "--labels", "one,two"], ["--labels", "2 for 1 sequence"])
+
+    @NEEDS_FFMPEG
     def test_a_failure_leaves_nothing(self):
         self.sequence()
         self.write("p.0004.png", harness.png(16, 16, lambda x, y: (0, 0, 0)))

@@ -135,11 +135,13 @@ std::vector<Step> steps_of(const DemoArguments& arguments, const std::string& co
                     {"--sampling", "uniform", "--spp", fmt::format("{:.3g}", first.spp)})},
   };
   if (has_ffmpeg) {
+    steps.push_back({"A video of them",
+                     {"video", in("foveated/frame.####.png"), "-o", in("foveated.mp4"), "--labels",
+                      "sampled where the eye looked", "--overwrite"}});
     steps.push_back(
-        {"A video of them", {"video", in("foveated/frame.####.png"), "-o", in("foveated.mp4"), "--overwrite"}});
-    steps.push_back({"Both beside each other: spread evenly on the left, where the eye looked (ring) on the right",
-                     {"video", in("uniform/frame.####.exr"), in("foveated/frame.####.exr"), "-o",
-                      in("side-by-side.mp4"), "--show-gaze", "--overwrite"}});
+        {"Both beside each other: spread evenly on the left, where the eye looked (ring) on the right",
+         {"video", in("uniform/frame.####.exr"), in("foveated/frame.####.exr"), "-o", in("side-by-side.mp4"),
+          "--show-gaze", "--labels", "spread evenly,where the eye looked", "--overwrite"}});
   }
   if (arguments.without_sweep) {
     return steps;

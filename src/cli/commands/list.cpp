@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@
 #include "gazetrace/aovs.hpp"
 #include "gazetrace/compare.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/headsets.hpp"
 #include "gazetrace/job.hpp"
 
 namespace gazetrace {
@@ -29,6 +31,7 @@ struct ListArguments {
 
 struct Member {
   std::string name, description;
+  nlohmann::ordered_json numbers = nlohmann::ordered_json::object();  // only --json has them
 };
 
 struct Family {
@@ -42,6 +45,39 @@ std::vector<Member> members_of(const Infos& infos) {
   std::vector<Member> members;
   for (const auto& info : infos) {
     members.push_back({info.name, with_flags(info.description)});
+  }
+  return members;
+}
+
+std::vector<Member> screen_members(const ListArguments& /*arguments*/) {
+  std::vector<Member> members;
+  for (const NamedDisplay& display : named_displays()) {
+    const DisplayGeometry& screen = display.geometry;
+    const auto angle_deg = [&](double size_cm) { return 2 * std::atan2(size_cm / 2, screen.distance_cm) * kDegPerRad; };
+    nlohmann::ordered_json numbers{{"width_px", screen.width_px},
+                                   {"height_px", screen.height_px},
+                                   {"width_cm", screen.width_cm},
+                                   {"height_cm", screen.height_cm},
+                                   {"distance_cm", screen.distance_cm},
+                                   {"pixels_per_degree", pixels_per_degree(screen)},
+                                   {"width_deg", angle_deg(screen.width_cm)},
+                                   {"height_deg", angle_deg(screen.height_cm)}};
+    if (screen.luminance_cd_m2 > 0) {
+      numbers["luminance_cd_m2"] = screen.luminance_cd_m2;
+    }
+    for (const Headset& headset : headsets()) {
+      if (headset.display == display.name) {
+        numbers["headset"] = {{"model", headset.model},
+                              {"pixels_per_degree_is", headset.density},
+                              {"field_deg", nlohmann::ordered_json::array({headset.field_deg.x})},
+                              {"rate_hz", headset.rate_hz},
+                              {"source", headset.source}};
+        if (headset.field_deg.y > 0) {
+          numbers["headset"]["field_deg"].push_back(headset.field_deg.y);
+        }
+      }
+    }
+    members.push_back({display.name, with_flags(display.description), std::move(numbers)});
   }
   return members;
 }
@@ -118,7 +154,7 @@ std::vector<Family> families() {
       {"camera-formats", "--camera-format", [](const auto&) { return members_of(camera_formats()); }},
       {"material-extensions", "scene files", [](const auto&) { return members_of(material_extensions()); }},
       {"metrics", "--metrics", [](const auto&) { return members_of(comparison_metrics()); }},
-      {"screens", "--screen", [](const auto&) { return members_of(named_displays()); }},
+      {"screens", "--screen", screen_members},
       {"views", "--view", view_members},
       {"aovs", "--aov", [](const auto&) { return members_of(aov_infos()); }},
   };
@@ -167,6 +203,7 @@ int run_list(ListArguments arguments) {
     json[family.name] = nlohmann::ordered_json::array();
     for (const Member& member : members) {
       json[family.name].push_back({{"name", member.name}, {"description", member.description}});
+      json[family.name].back().update(member.numbers);
     }
   }
   if (text.empty()) {
@@ -181,7 +218,8 @@ int run_list(ListArguments arguments) {
 std::vector<std::string> names_of_option(const std::string& flag) {
   std::vector<std::string> names;
   for (const Family& family : families()) {
-    if (family.option == flag && flag != "--view") {
+    const bool takes = family.option == flag || family.option.ends_with(" " + flag);  // "gaze events --method"
+    if (takes && flag != "--view") {
       for (const Member& member : family.members({})) {
         names.push_back(member.name.substr(0, member.name.find_first_of(": ")));
       }

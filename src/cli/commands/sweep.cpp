@@ -84,6 +84,19 @@ std::string shares_json(const SweepPlan& plan, std::uint32_t count) {
   return chunks.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
+// Student's factor for few repeats is so large that no interval says anything.
+void warn_of_repeats(int repeats) {
+  constexpr int kFew = 3;
+  if (repeats < 2) {
+    print_warnings({"one repeat gives no interval; give repeats = 3 or more in [measure]"});
+  } else if (repeats < kFew) {
+    print_warnings(
+        {fmt::format("two repeats give no interval that tells anything: its half is {:.1f} standard errors; "
+                     "three have {:.1f}, five {:.1f}",
+                     student_t_quantile(0.975, 1), student_t_quantile(0.975, 2), student_t_quantile(0.975, 4))});
+  }
+}
+
 SweepPlan load_plan(const SweepArguments& arguments) {
   if (arguments.plan.empty()) {
     throw Error(ErrorKind::usage, "", "no plan was given", "gazetrace sweep PLAN.toml -o FOLDER");
@@ -125,6 +138,7 @@ int run_sweep_command(const SweepArguments& arguments) {
     return exit_done;
   }
   if (arguments.dry_run) {
+    warn_of_repeats(plan.measure.repeats);
     const int given = plan.tests.front().pipeline.threads;
     const int threads = given > 0 ? given : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     const SweepEstimate estimate = estimate_sweep(plan);

@@ -35,6 +35,7 @@ struct VideoArguments {
   CompareJob job;  // its reference and test are the two sequences; the same one twice where there is one
   std::string output, color;
   VideoSettings video;
+  std::vector<std::string> labels;  // of the sequences, from the left
   bool show_gaze = false, show_rings = false, fixation_mark = false, overwrite = false;
   JsonOutput json;
 };
@@ -110,6 +111,12 @@ class FrameMaker {
         rings_deg_(ring_angles_deg(foveated_run(inputs))),
         color_(compare_color(arguments.job, inputs)) {
     print_warnings(color_.warnings());
+    if (const std::size_t shown = arguments.job.test == arguments.job.reference ? 1 : 2;
+        arguments.labels.size() > shown) {
+      throw Error(ErrorKind::usage, "--labels",
+                  fmt::format("there are {} for {} sequence{}", arguments.labels.size(), shown, shown == 1 ? "" : "s"),
+                  "give one for each, without commas in it");
+    }
     if (arguments.show_rings && (rings_deg_.empty() || !inputs.screen)) {
       throw Error(
           ErrorKind::usage, "--show-rings",
@@ -129,12 +136,12 @@ class FrameMaker {
     const FrameFacts right_facts = job.test == job.reference ? left.facts : read_frame_facts(right_path);
     const ComparedGaze gaze =
         compared_gaze(job, inputs_, left.facts, right_facts, frame, image.width_px, image.height_px);
-    draw(image, gaze.px);
+    draw(image, gaze.px, 0);
     if (job.test != job.reference) {
       const ComparedPicture right = read_compared_picture(right_path);
       check_comparable(job, inputs_, left, right, left_path, right_path);
       DisplayImage other = shown(right, ev);
-      draw(other, gaze.px);
+      draw(other, gaze.px, 1);
       image = side_by_side(image, other);
     }
     return image;
@@ -149,7 +156,21 @@ class FrameMaker {
     return picture.is_linear ? color_.apply(picture.picture.light, ev, 8, arguments_.job.shared.threads)
                              : display_image_of(picture.picture.code);
   }
-  void draw(DisplayImage& image, const std::optional<Vec2d>& gaze_px) {
+  // What the ring is stands under it all, where there are labels.
+  void draw_labels(DisplayImage& image, std::size_t place) const {
+    if (place >= arguments_.labels.size()) {
+      return;
+    }
+    const int dot_px = std::max(1, image.width_px / 320);
+    draw_label(image, {4.0 * dot_px, 4.0 * dot_px}, arguments_.labels[place], dot_px);
+    if (arguments_.show_gaze) {
+      const double top_px = image.height_px - 15.0 * dot_px;
+      draw_label(image, {4.0 * dot_px, top_px}, "   gaze", dot_px);
+      draw_gaze_ring(image, {13.0 * dot_px, top_px + 5.5 * dot_px}, 3.5 * dot_px, dot_px);
+    }
+  }
+  void draw(DisplayImage& image, const std::optional<Vec2d>& gaze_px, std::size_t place) {
+    draw_labels(image, place);
     if (!gaze_px) {
       return;
     }
@@ -249,6 +270,8 @@ OptionSchema<VideoArguments> video_schema() {
               "Draws where the regions end, or else 5, 10 and 20 degrees from the gaze");
   schema.flag("--fixation-mark", &VideoArguments::fixation_mark,
               "Draws a mark to look at where the viewer looked (0.6 degrees; Thaler et al. 2013)");
+  schema.value("--labels", &VideoArguments::labels, "TEXT,TEXT",
+               "Writes what each sequence shows into its corner, in capitals, and beside --show-gaze what the ring is");
   schema.group("Frames and gaze");
   schema.value("--frames", job(&CompareJob::frames), "LIST", "Which frames; default: those that are there");
   schema.value("--fps", job(&CompareJob::fps), "RATE",

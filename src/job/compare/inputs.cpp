@@ -16,6 +16,10 @@ std::vector<std::int32_t> frames_of_both(const CompareJob& job) {
   const std::vector<std::int32_t> test = find_frames(job.test);
   std::vector<std::int32_t> both;
   std::set_intersection(reference.begin(), reference.end(), test.begin(), test.end(), std::back_inserter(both));
+  if (job.frames && job.frames->frames.empty()) {
+    throw Error(ErrorKind::usage, "`frames`", "which fixations there are is asked when frames are rendered",
+                "leave it out: frames that are there are compared");
+  }
   if (job.frames) {
     for (const std::int32_t frame : job.frames->frames) {
       if (!std::binary_search(both.begin(), both.end(), frame)) {

@@ -12,6 +12,7 @@
 
 #include "core/data_root.hpp"
 #include "gazetrace/error.hpp"
+#include "scene/gltf/foreign_scene.hpp"
 
 namespace gazetrace {
 namespace {
@@ -163,6 +164,9 @@ GltfFile read_gltf_file(const std::string& path) {
   if (!std::filesystem::exists(path, error)) {
     throw Error(ErrorKind::input, path, "there is no such file", "give the path of a .gltf or .glb");
   }
+  if (std::filesystem::is_directory(path, error)) {
+    refuse_folder_as_scene(path);
+  }
   file.bytes = read_bytes(path, path, std::numeric_limits<std::uint64_t>::max());
   if (file.bytes.empty()) {
     throw Error(ErrorKind::input, path, "the file is empty", "copy or export it again");
@@ -175,6 +179,7 @@ GltfFile read_gltf_file(const std::string& path) {
     if (file.json.starts_with("\xEF\xBB\xBF")) {
       file.json.remove_prefix(3);
     }
+    refuse_foreign_scene(path, file.json);
   }
   return file;
 }
