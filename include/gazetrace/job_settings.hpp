@@ -97,6 +97,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   SizePx size{1280, 720};
   FrameRate fps;
   std::optional<FrameList> frames;
+  std::int32_t first_frame = 1;
   DurationNs start;
   std::optional<Chunk> chunk;
 

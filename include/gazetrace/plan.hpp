@@ -51,7 +51,8 @@ struct PlanSettings {
   std::vector<std::int32_t> frames;
   Shutter shutter;
   FrameRate fps;
-  std::int64_t start_ns = 0;  // the video time at which frame 1 begins
+  std::int32_t first_frame = 1;  // the number of the video's first frame
+  std::int64_t start_ns = 0;     // the video time at which it begins
   CameraExtrapolation camera_extrapolation = CameraExtrapolation::error;
   GazeMapping gaze;
   // More frames than this in a row without gaze are refused: most often the log holds several recordings, or the frames
@@ -75,7 +76,8 @@ struct NeighborView {
 // Everything about one frame: it can be rendered from this and the scene alone, apart from a window's other frames.
 struct FrameRequest {
   std::int32_t frame = 1;
-  std::int64_t t_video_ns = 0;  // the middle of the frame: start + (frame - 1/2) / fps, rounded down to a nanosecond
+  std::int64_t t_video_ns =
+      0;  // the middle of the frame, start + (frame - first + 1/2) / fps, rounded down to a nanosecond
   std::int64_t shutter_open_ns = 0, shutter_close_ns = 0;  // video time; equal: no motion blur
   int width_px = 0, height_px = 0;
   Camera camera;
