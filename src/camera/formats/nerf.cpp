@@ -75,9 +75,8 @@ void check_rotation(const Affine& a, const char* key, const std::string& place) 
       std::abs(dot(a.x, a.y)) < kOff && std::abs(dot(a.y, a.z)) < kOff && std::abs(dot(a.z, a.x)) < kOff;
   if (!unit || !square || determinant(a) < 0) {
     throw Error(ErrorKind::input, place,
-                fmt::format(unit && square ? "its {} is a mirror image, not a rotation"
-                                           : "the columns of its {} are not a rotation",
-                            key),
+                unit && square ? fmt::format("its {} is a mirror image, not a rotation", key)
+                               : fmt::format("the columns of its {} are not a rotation", key),
                 "export camera-to-world matrices without scale; `camera-scale` scales a path");
   }
 }
