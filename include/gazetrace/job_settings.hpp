@@ -98,6 +98,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   FrameRate fps;
   std::optional<FrameList> frames;
   std::int32_t first_frame = 1;
+  std::optional<FrameCrop> crop;
   DurationNs start;
   std::optional<Chunk> chunk;
 

@@ -27,9 +27,17 @@ void add_text(Imf::Header& header, const std::string& name, const std::string& v
 
 namespace {
 
-void add_color_space(Imf::Header& header) {
-  Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec.709 with D65
-  header.insert("colorSpace", Imf::StringAttribute("lin_rec709"));
+const Primaries& primaries_of(ExrSpace space) {
+  return space == ExrSpace::acescg ? kAp1 : space == ExrSpace::aces2065_1 ? kAp0 : kRec709;
+}
+
+void add_color_space(Imf::Header& header, ExrSpace space) {
+  const auto place = [](const Vec2d& xy) { return Imath::V2f(static_cast<float>(xy.x), static_cast<float>(xy.y)); };
+  const Primaries& p = primaries_of(space);
+  Imf::addChromaticities(header, {place(p.red), place(p.green), place(p.blue), place(p.white)});
+  header.insert("colorSpace", Imf::StringAttribute(space == ExrSpace::acescg       ? "ACEScg"
+                                                   : space == ExrSpace::aces2065_1 ? "ACES2065-1"
+                                                                                   : "lin_rec709"));
 }
 
 // From world space to the camera space of the EXR standard, which is left-handed with +z forward. Imath multiplies row
@@ -134,8 +142,16 @@ void add_gaze_numbers(Imf::Header& header, const GazeNumbers& gaze) {
 
 }  // namespace
 
-void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
-  add_color_space(header);
+std::optional<RgbMatrix> matrix_to(ExrSpace space) {
+  return matrix_from_rec709(primaries_of(space));
+}
+
+void describe(Imf::Header& header, const FrameHeader& frame, ExrSpace space) {
+  Camera camera = frame.camera;
+  camera.projection = frame.window.is_part() ? frame.window.projection : camera.projection;
+  const Imath::V2i corner = header.displayWindow().size();  // the last pixel
+  const double aspect = (corner.x + 1.0) / (corner.y + 1.0);
+  add_color_space(header, space);
   header.insert("software", Imf::StringAttribute(frame.software));
   if (frame.fps.numerator <= std::numeric_limits<int>::max() &&
       frame.fps.denominator <= std::numeric_limits<int>::max()) {
@@ -144,9 +160,9 @@ void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
   }
   add_time_code(header, frame);
   add_gaze_numbers(header, frame.gaze);
-  const Imath::M44d to_camera = world_to_camera(frame.camera.pose);
+  const Imath::M44d to_camera = world_to_camera(camera.pose);
   Imf::addWorldToCamera(header, Imath::M44f(to_camera));
-  Imf::addWorldToNDC(header, Imath::M44f(to_camera * camera_to_ndc(frame.camera.projection, aspect)));
+  Imf::addWorldToNDC(header, Imath::M44f(to_camera * camera_to_ndc(camera.projection, aspect)));
   header.insert("gazetrace:frame", Imf::IntAttribute(frame.frame));
   header.insert("gazetrace:exposure_ev", Imf::DoubleAttribute(frame.exposure_ev));
   // Stored as text, since there is no attribute type for 64-bit integers.
@@ -159,7 +175,7 @@ void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
   if (frame.samples_per_pixel > 0) {
     add_text(header, "samples_per_pixel", fmt::format("{}", frame.samples_per_pixel));
   }
-  add_text(header, "camera", camera_text(frame.camera));
+  add_text(header, "camera", camera_text(camera));
   if (frame.shutter_close_ns > frame.shutter_open_ns) {
     add_text(header, "shutter_ns", fmt::format("{},{}", frame.shutter_open_ns, frame.shutter_close_ns));
   }

@@ -23,6 +23,10 @@ void add_frame_options(JobSchema& schema) {
           "the same moments")
       .within(1, 1e9);
   schema.value("--start", &JobSettings::start, "DURATION", Touch::frames, "Video time at which the first frame begins");
+  schema.value(
+      "--crop", &JobSettings::crop, "X,Y,W,H", Touch::frames,
+      "Renders this rectangle of the frames alone, in pixels from the top left: the data window of an .exr, whose "
+      "display window stays the whole frame, and all of a display picture");
   schema.value("--frame-rect", &JobSettings::frame_rect, "X,Y,W,H", Touch::frames,
                "Where the frame lies on the screen, in screen pixels; default: it fills the screen");
 }
