@@ -155,6 +155,7 @@ WrittenExr write_frame_exr(const std::string& path, const Frame& frame, const Im
   picture.begin_layer("beauty");
   picture.add_color({"R", "G", "B"}, frame.radiance, settings.pixels);
   if (settings.alpha) {
+    require("alpha", !layers.alpha.empty());
     picture.add_share("A", layers.alpha);
   }
   for (const std::string& aov : settings.aovs) {

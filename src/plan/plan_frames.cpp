@@ -111,12 +111,12 @@ std::int64_t earlier(std::int64_t t_ns, std::int64_t by_ns) {
 }
 
 // The frame before this one. For the first of the list it is guessed: frames before it are taken to be as far apart as
-// those after it, and where that would be below 1, it is the frame itself.
-std::int32_t likely_predecessor(const std::vector<std::int32_t>& frames, std::size_t index) {
+// those after it, and where that would be before the video's first, it is the frame itself.
+std::int32_t likely_predecessor(const std::vector<std::int32_t>& frames, std::size_t index, std::int32_t first) {
   const std::int32_t frame = frames[index];
   const std::size_t next = std::max<std::size_t>(index, 1);
   const std::int32_t step = next < frames.size() ? frames[next] - frames[next - 1] : 1;
-  return frame > step ? frame - step : frame;
+  return frame - step >= first ? frame - step : frame;
 }
 
 void say_what_the_eye_did(FrameRequest& request, std::int32_t frame_before, const GazeMotion& motion,
@@ -240,7 +240,8 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
         request.gaze_effective_age_ns = std::llround(static_cast<double>(*age_ns) * settings.gaze.scale);
       }
       request.eye_in_saccade = motion.in_saccade(request.gaze_render.t_log_ns);
-      say_what_the_eye_did(request, likely_predecessor(settings.frames, plan.frames.size()), motion, *log, settings);
+      say_what_the_eye_did(request, likely_predecessor(settings.frames, plan.frames.size(), settings.first_frame),
+                           motion, *log, settings);
       geometry.settle(request.gaze_render);
       geometry.settle(request.gaze_true);
       request.gaze_direction_render = geometry.direction(request.gaze_render);
