@@ -4,10 +4,10 @@
 
 #include <OpenEXR/ImfHeader.h>
 
+#include <array>
 #include <optional>
 #include <string>
 
-#include "core/primaries.hpp"
 #include "gazetrace/output.hpp"
 
 namespace gazetrace {
@@ -16,7 +16,7 @@ namespace gazetrace {
 void add_text(Imf::Header& header, const std::string& name, const std::string& value);
 // The header must have its windows.
 void describe(Imf::Header& header, const FrameHeader& frame, ExrSpace space);
-// Nothing for Rec.709, which is rendered in.
-std::optional<RgbMatrix> matrix_to(ExrSpace space);
+// The rows of the matrix from Rec.709, which is rendered in; nothing for that itself.
+std::optional<std::array<Vec3f, 3>> matrix_to(ExrSpace space);
 
 }  // namespace gazetrace

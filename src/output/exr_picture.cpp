@@ -173,10 +173,10 @@ void ExrPicture::add_half_rgb(const std::array<std::string, 3>& names, const Ima
 
 void ExrPicture::add_color(const std::array<std::string, 3>& names, const ImageRgb& image, ExrPixels pixels) {
   const ImageRgb* shown = &image;
-  if (const std::optional<RgbMatrix> matrix = matrix_to(settings_.space)) {
+  if (const auto matrix = matrix_to(settings_.space)) {
     ImageRgb& converted = own_rgb_.emplace_back(image);
     for (Vec3f& pixel : converted.pixels) {
-      pixel = transformed(*matrix, pixel);
+      pixel = {dot((*matrix)[0], pixel), dot((*matrix)[1], pixel), dot((*matrix)[2], pixel)};
     }
     shown = &converted;
   }
