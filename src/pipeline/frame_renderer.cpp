@@ -42,7 +42,8 @@ std::shared_ptr<const LearnedLight> FrameRenderer::learned_light(const PosedScen
     Camera camera = request.camera;
     if (window.is_part()) {
       camera.projection = window.projection;
-      camera.middle_px = {};
+      camera.middle_px.x -= window.x_px + 0.5 * (request.width_px - window.frame_width_px);
+      camera.middle_px.y -= window.y_px + 0.5 * (request.height_px - window.frame_height_px);
     }
     LightLearning learning =
         scene.learn_light(camera, window.is_part() ? window.frame_width_px : request.width_px,
