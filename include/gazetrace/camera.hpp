@@ -31,6 +31,7 @@ struct Projection {
   ProjectionKind kind = ProjectionKind::perspective;
   double yfov_rad = 50.0 * kRadPerDeg;  // perspective: vertical field of view, 0 < yfov < pi
   double ymag_m = 1.0;                  // orthographic: half the height of the view
+  double aspect = 0;  // width over height of the view that the camera shows uncropped; 0: that of any frame
   // Where the frame's middle lies right of and above the view axis: of a perspective camera one metre before it.
   Vec2d middle_m;
   // glTF's znear and zfar: rays are clipped to depths in [near_m, far_m]; far_m 0: infinite.
@@ -40,6 +41,10 @@ struct Projection {
 
 // Width and height of a pixel: of a perspective camera one metre before it.
 double pixel_step_m(const Projection& projection, int height_px);
+
+// The projection for frames of this width over height: where the frame is narrower than the camera's own view, it shows
+// more above and below, and crops nothing (glTF 3.10.3). Less than half of one of `width_px` pixels is no difference.
+Projection fit_projection(Projection projection, int width_px, int height_px);
 
 // A thin lens. What lies at the focus distance is sharp; a point at distance d along the view axis blurs into a disc of
 // diameter 2 radius |d - focus| / (d focus), measured in tangents of the view angle. The field of view is that of the
@@ -118,8 +123,9 @@ struct CameraReadOptions {
   // the middle of the video's frame n, so that each of their poses is rendered as it stands where the rates agree.
   FrameRate fps;
   RotationOrder rotation_order = RotationOrder::zxy;  // of Nuke's Euler angles; zxy is Nuke's default
-  // false: the first time stamp becomes video time 0, and the first frame number becomes frame 1. true: both stay.
+  // false: the first time stamp becomes video time 0, and the first frame number that of the video. true: both stay.
   bool keep_time = false;
+  std::int32_t first_frame = 1;  // the number of the video's first frame
 };
 
 // A path through poses with increasing video times. Error(input) that names `source` where there is no pose, and where

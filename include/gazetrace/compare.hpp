@@ -44,6 +44,8 @@ GazeClass gaze_class_of(const GazeAtTime& gaze);
 
 // The metrics of metrics.hpp, and those of whole sequences (src/compare/sequence_metrics.def).
 std::vector<MetricInfo> comparison_metrics();
+// "dB", "JOD v1.2": scores of other versions of a metric do not compare with it. Empty: a plain number.
+std::string metric_unit(const std::string& metric);
 
 struct ComparisonSettings {
   std::vector<std::string> metrics;

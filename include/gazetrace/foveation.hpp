@@ -168,6 +168,8 @@ struct MapTile {
 
 struct SamplingMap {
   int width_px = 0, height_px = 0;
+  // Of its first pixel in the frame, of which it may be a part. Pixels have the random numbers of their frame.
+  int x_px = 0, y_px = 0;
   Image<std::uint8_t> region;  // index into `regions` for each pixel
   std::vector<MapRegion> regions;
   std::vector<Site> sites;  // in order of the tiles

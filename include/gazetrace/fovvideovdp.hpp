@@ -21,6 +21,7 @@
 namespace gazetrace {
 
 inline constexpr const char* kFovVideoVdpParameters = "FovVideoVDP parameters 1.2";
+inline constexpr const char* kFovVideoVdpUnit = "JOD v1.2";  // stands beside each score
 
 // How code values become luminance. The default is the metric's display "standard_4k".
 struct DisplayPhotometry {

@@ -26,16 +26,20 @@ struct MotionLayers {
 struct LayerSettings {
   bool forward = false, backward = false, position = false;
   bool light = false;               // FrameLayers::light
+  bool alpha = false;               // FrameLayers::alpha
   std::vector<std::string> mattes;  // some of cryptomatte_layers()
-  // Of mattes. Filter, footprint and seed are those that the frame's samples are traced with.
+  // Of mattes and alpha. Filter, footprint and seed are those that the frame's samples are traced with.
   CoverageSettings coverage;
-  [[nodiscard]] bool any() const { return forward || backward || position || light || !mattes.empty(); }
+  [[nodiscard]] bool any() const { return forward || backward || position || light || alpha || !mattes.empty(); }
 };
 
 struct FrameLayers {
   // One for each Cryptomatte layer that was asked for.
   std::shared_ptr<const std::vector<MatteTable>> tables;
   std::vector<Coverage> mattes;
+  // The share of each pixel that surfaces cover, by CoverageSettings::rays first hits that are its own: it has no noise
+  // but at edges, and does not follow the spread of samples, filters or windows. Where it is 0, the picture is black.
+  ImageGray alpha;
   MotionLayers motion;  // images are empty where they were not asked for
   // One for each LightGroup, or none. Under the filters none and linear, whose weights do not depend
   // on the light, each is what the filter makes of the group's own samples. Under other filters, and where frames are

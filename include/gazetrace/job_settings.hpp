@@ -97,6 +97,8 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   SizePx size{1280, 720};
   FrameRate fps;
   std::optional<FrameList> frames;
+  std::int32_t first_frame = 1;
+  std::optional<FrameCrop> crop;
   DurationNs start;
   std::optional<Chunk> chunk;
 

@@ -103,8 +103,8 @@ struct HdrFlipMap {
 HdrFlipMap hdr_flip_map(const ImageRgb& reference, const ImageRgb& test, const FlipExposures& exposures,
                         FlipToneMapper tone_mapper, double pixels_per_degree, int threads = 0);
 // Fills in what the settings leave empty. start brings the reference's brightest pixel to 0.85 of the tone curve's
-// range, stop its median pixel (the upper median of all pixels; where that is black, of those of positive luminance).
-// An all-black reference gives a single exposure of 0.
+// range, stop its median pixel: the upper median of all pixels, or 2^-23 where that is darker, as in FLIP 1.7. An
+// all-black reference gives a single exposure of 0.
 FlipExposures flip_exposures(const ImageRgb& reference, const FlipExposureSettings& settings);
 
 // Statistics of a map without its margin, with sums in double precision.

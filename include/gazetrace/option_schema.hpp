@@ -258,9 +258,9 @@ struct Bare<std::optional<T>> {
 template <class T>
 constexpr bool is_list() {
   return std::is_same_v<T, Vec2d> || std::is_same_v<T, Vec3d> || std::is_same_v<T, FrameRect> ||
-         std::is_same_v<T, PixelIndex> || std::is_same_v<T, std::array<std::uint32_t, 3>> ||
-         std::is_same_v<T, std::array<int, 2>> || std::is_same_v<T, std::array<double, 2>> ||
-         std::is_same_v<T, std::vector<std::string>>;
+         std::is_same_v<T, FrameCrop> || std::is_same_v<T, PixelIndex> ||
+         std::is_same_v<T, std::array<std::uint32_t, 3>> || std::is_same_v<T, std::array<int, 2>> ||
+         std::is_same_v<T, std::array<double, 2>> || std::is_same_v<T, std::vector<std::string>>;
 }
 
 template <class T>

@@ -41,6 +41,12 @@ enum class WorldUp : std::uint8_t { y, z };
 struct SizePx {
   int width = 0, height = 0;
 };
+// A rectangle of a frame, in its pixels from the top left.
+struct FrameCrop {
+  int x_px = 0, y_px = 0, width_px = 0, height_px = 0;
+  friend bool operator==(const FrameCrop&, const FrameCrop&) = default;
+};
+
 struct FrameList {
   std::vector<std::int32_t> frames;  // none: "fixations", one for each of the gaze log
 };
@@ -68,6 +74,7 @@ void parse_value(std::string_view text, const std::string& place, Aperture& valu
 void parse_value(std::string_view text, const std::string& place, Vec2d& value);
 void parse_value(std::string_view text, const std::string& place, Vec3d& value);
 void parse_value(std::string_view text, const std::string& place, FrameRect& value);
+void parse_value(std::string_view text, const std::string& place, FrameCrop& value);
 void parse_value(std::string_view text, const std::string& place, PixelIndex& value);
 void parse_value(std::string_view text, const std::string& place, std::array<std::uint32_t, 3>& value);
 void parse_value(std::string_view text, const std::string& place, std::array<int, 2>& value);
@@ -95,6 +102,7 @@ std::string format_value(const Aperture& value);
 std::string format_value(const Vec2d& value);
 std::string format_value(const Vec3d& value);
 std::string format_value(const FrameRect& value);
+std::string format_value(const FrameCrop& value);
 std::string format_value(const PixelIndex& value);
 std::string format_value(const std::array<std::uint32_t, 3>& value);
 std::string format_value(const std::array<int, 2>& value);
@@ -153,6 +161,8 @@ GAZETRACE_ENUM_NAMES(LightSampling, "light sampling", {E::mis, "mis"}, {E::light
 GAZETRACE_ENUM_NAMES(PixelFilter, "pixel filter", {E::box, "box"}, {E::blackman_harris, "blackman-harris"})
 GAZETRACE_ENUM_NAMES(AccumulateMode, "accumulation", {E::automatic, "auto"}, {E::off, "off"}, {E::window, "window"})
 GAZETRACE_ENUM_NAMES(ExrPixels, "EXR pixel type", {E::half, "half"}, {E::float32, "float"})
+GAZETRACE_ENUM_NAMES(ExrSpace, "colour space of an EXR", {E::rec709, "Rec.709"}, {E::acescg, "ACEScg"},
+                     {E::aces2065_1, "ACES2065-1"})
 GAZETRACE_ENUM_NAMES(ExrParts, "parts of an EXR", {E::single, "single"}, {E::multi, "multi"})
 #undef GAZETRACE_ENUM_NAMES
 

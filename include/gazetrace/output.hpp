@@ -34,6 +34,8 @@ std::string folder_of_frames(const std::string& pattern);
 std::vector<std::int32_t> find_frames(const std::string& pattern);
 
 enum class ExrPixels { half, float32 };
+// What colours of an EXR are in: linear, with Rec.709's primaries or those of ACES, which are stated in its header.
+enum class ExrSpace { rec709, acescg, aces2065_1 };
 // Whether all channels are in one part of the file, or each layer is a part of its own, named after it, the picture
 // first as "beauty". Readers that want one layer of many then read that alone.
 enum class ExrParts { single, multi };
@@ -41,11 +43,13 @@ enum class ExrParts { single, multi };
 struct ExrSettings {
   std::string pattern;  // empty: no EXR
   ExrPixels pixels = ExrPixels::half;
+  ExrSpace space = ExrSpace::rec709;
   // Lossless: none, rle, zips, zip, piz. Lossy: pxr24, b44, b44a, dwaa, dwab. On noisy half-float frames piz takes
   // about half the time of zip at its fastest level and makes smaller files.
   std::string compression = "piz";
   int zip_level = 1;              // of zip and zips: 1 (fast) .. 9 (small); lossless at every level
   std::vector<std::string> aovs;  // some of aov_names()
+  bool alpha = false;             // FrameLayers::alpha as the picture's A; display pictures have it as well, straight
   // With `multi` and a lossy compression, layers of numbers (all but light, albedo and normals) are compressed by zip.
   ExrParts parts = ExrParts::single;
   std::optional<double> sky_depth_m;  // the depth of pixels that see nothing; empty: infinite
@@ -62,6 +66,7 @@ struct DisplaySettings {
 // The number of bits to ask ColorPipeline::apply for. Error(usage) for an unknown suffix, and for bits that the format
 // does not have.
 int display_image_bits(const DisplaySettings& settings);
+bool holds_alpha(const DisplaySettings& settings);
 // Error(usage) where the format cannot hold a picture of this size.
 void check_display_image_size(const DisplaySettings& settings, int width_px, int height_px);
 
@@ -105,6 +110,7 @@ struct FrameHeader {
   std::int64_t t_video_ns = 0;
   FrameRate fps;
   Camera camera;
+  FrameWindow window;
   std::int64_t shutter_open_ns = 0, shutter_close_ns = 0;  // video time; equal: an instant
   GazeAtTime gaze_render, gaze_true;
   GazeNumbers gaze;
@@ -127,10 +133,12 @@ struct WrittenExr {
 WrittenExr write_frame_exr(const std::string& path, const Frame& frame, const ImageGray* eccentricity_deg,
                            const FrameHeader& header, const ExrSettings& settings, int threads = 0,
                            const FrameLayers& layers = {});
-WrittenFile write_sampling_map_exr(const std::string& path, const SamplingMap& map, const ImageGray* eccentricity_deg);
-// Writes a PNG, JPEG, TIFF or DPX, by the suffix, with OpenImageIO; the file is complete or absent.
+WrittenFile write_sampling_map_exr(const std::string& path, const SamplingMap& map, const ImageGray* eccentricity_deg,
+                                   const FrameWindow& window = {});
+// Writes a PNG, JPEG, TIFF or DPX, by the suffix, with OpenImageIO; the file is complete or absent. With `alpha`, which
+// PNG and TIFF hold, the colours of the image are straight: not multiplied by it.
 WrittenFile write_display_image(const std::string& path, const DisplayImage& image, const FrameHeader& header,
-                                const DisplaySettings& settings);
+                                const DisplaySettings& settings, const ImageGray* alpha = nullptr);
 ImageRgb read_exr_rgb(const std::string& path);
 // What the header of an EXR or display image of gazetrace says of the run it is of. The digest is empty where there is
 // none, and for files that are unreadable or incomplete.

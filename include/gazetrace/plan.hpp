@@ -51,7 +51,8 @@ struct PlanSettings {
   std::vector<std::int32_t> frames;
   Shutter shutter;
   FrameRate fps;
-  std::int64_t start_ns = 0;  // the video time at which frame 1 begins
+  std::int32_t first_frame = 1;  // the number of the video's first frame
+  std::int64_t start_ns = 0;     // the video time at which it begins
   CameraExtrapolation camera_extrapolation = CameraExtrapolation::error;
   GazeMapping gaze;
   // More frames than this in a row without gaze are refused: most often the log holds several recordings, or the frames
@@ -72,12 +73,23 @@ struct NeighborView {
   std::int64_t t_video_ns = 0;
 };
 
+// Where the pixels of a request lie in the frame that is shown, of which it may be a part.
+struct FrameWindow {
+  int x_px = 0, y_px = 0;  // of the first pixel
+  // Of the whole frame, as its projection is; 0: the request is all of it.
+  int frame_width_px = 0, frame_height_px = 0;
+  Projection projection;
+  [[nodiscard]] bool is_part() const { return frame_width_px > 0; }
+};
+
 // Everything about one frame: it can be rendered from this and the scene alone, apart from a window's other frames.
 struct FrameRequest {
   std::int32_t frame = 1;
-  std::int64_t t_video_ns = 0;  // the middle of the frame: start + (frame - 1/2) / fps, rounded down to a nanosecond
+  std::int64_t t_video_ns =
+      0;  // the middle of the frame, start + (frame - first + 1/2) / fps, rounded down to a nanosecond
   std::int64_t shutter_open_ns = 0, shutter_close_ns = 0;  // video time; equal: no motion blur
   int width_px = 0, height_px = 0;
+  FrameWindow window;
   Camera camera;
   NeighborView before, after;
   PlanarView view;         // the eye's view of the frame on the display or, for gaze directions, the camera's frustum

@@ -46,6 +46,7 @@ struct TraceSettings {
   bool learn_light = true;
   // What the frame has learned: trace() draws bounces by it. Empty: by the BSDF alone, whatever `learn_light` says.
   std::shared_ptr<const LearnedLight> learned;
+  bool show_environment = true;           // false: it gives light, and is black where the camera sees it itself
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
   // The pixel filter is this many times as wide, above 0. So a frame of an eighth of the size shows, with 1/8, single
   // pixels of the larger frame, eight apart, and their samples have the noise that they have there.

@@ -10,8 +10,9 @@ class JobOptions(TypedDict, total=False):
     preset: Value | None
     output: str | Sequence[Value] | None
     exr_pixels: Value | None
+    exr_space: Value | None
     exr_compression: Value | None
-    exr_zip_level: Value | None
+    alpha: bool | None
     aov: Value | Sequence[Value] | None
     exr_parts: Value | None
     sky_depth: Value | None
@@ -76,7 +77,9 @@ class JobOptions(TypedDict, total=False):
     size: str | Sequence[int] | None
     fps: Value | None
     frames: Value | Iterable[int] | None
+    first_frame: Value | None
     start: Value | None
+    crop: Value | Sequence[Value] | None
     frame_rect: Value | Sequence[Value] | None
     sampling: Value | None
     spp: Value | None

@@ -103,7 +103,7 @@ def caveats(results):
             curve = f", {fixed['curve']}" if fixed.get("curve") else ""
             value = f"{fixed.get('bound') or ''} {words.number(fixed['speed_up'])}".strip() if fixed.get("speed_up") is not None else "not known"
             why = f", {fixed['why']}" if fixed.get("why") else ""
-            said.append(f"{words.place(fixed.get('scene', ''), fixed.get('gaze', ''))}{curve}: speed-up at {fixed['metric']} {words.number(fixed['at'])} is {value}{why}.")
+            said.append(f"{words.place(fixed.get('scene', ''), fixed.get('gaze', ''))}{curve}: speed-up at {results.metric_words.get(fixed['metric'], fixed['metric'])} {words.number(fixed['at'])} is {value}{why}.")
     return said + _controls(results)
 
 

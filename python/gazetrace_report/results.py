@@ -163,6 +163,7 @@ class Results:
         self.raw = self._read()
         self.title = self.raw.get("title") or "Sweep"
         self.metrics = [Metric(m["name"], m.get("unit", ""), m.get("better", "lower") == "lower", m.get("note", "")) for m in self.raw["metrics"]]
+        self.metric_words = {metric.name: metric.words for metric in self.metrics}
         self.rows = [Row(r["id"], r["scene"], r.get("gaze", ""), r["role"], r.get("label") or r["id"], r.get("of"), r.get("baselines") or {}, r,
                          frames=r.get("frames", [])) for r in self.raw["rows"]]
         self.by_id = {row.id: row for row in self.rows}

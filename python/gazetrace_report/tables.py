@@ -116,7 +116,8 @@ def fixed_quality(results):
     rows = []
     for fixed in results.raw.get("fixed_quality") or []:
         bound = f"{fixed['bound']} " if fixed.get("bound") else ""
-        rows.append((words.place(fixed.get("scene", ""), fixed.get("gaze", "")) + (f", {fixed['curve']}" if fixed.get("curve") else ""), fixed["metric"],
+        rows.append((words.place(fixed.get("scene", ""), fixed.get("gaze", "")) + (f", {fixed['curve']}" if fixed.get("curve") else ""),
+                     results.metric_words.get(fixed["metric"], fixed["metric"]),
                      words.number(fixed["at"]), bound + words.number(fixed["speed_up"]) if fixed.get("speed_up") is not None else "not known",
                      words.number(fixed.get("model_gain")), fixed.get("why") or ""))
     columns = ["scene and gaze", "metric", "at", "speed-up", "by the model", "why not"]
@@ -124,7 +125,7 @@ def fixed_quality(results):
 
 
 def controls(results):
-    rows = [(words.place(control.get("scene", ""), control.get("gaze", "")), control["metric"], control.get("wrong") or "", words.number(control.get("right_score")),
+    rows = [(words.place(control.get("scene", ""), control.get("gaze", "")), results.metric_words.get(control["metric"], control["metric"]), control.get("wrong") or "", words.number(control.get("right_score")),
              words.number(control.get("wrong_score")), {"sensitive": "yes", "insensitive": "no: insensitive here", "undecided": "undecided"}[results.control_verdict(control)],
              control.get("why") or "") for control in results.raw.get("controls") or []]
     columns = ["scene and gaze", "metric", "gaze", "right", "wrong", "does the metric notice", "why"]

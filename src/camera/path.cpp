@@ -30,6 +30,23 @@ const std::vector<CameraFormat>& formats() {
   return all;
 }
 
+// KITTI's odometry poses, the rows of a 3x4 matrix on a line, are common and have no times.
+void refuse_kitti(const CameraFile& file) {
+  LineReader lines(file.text);
+  std::vector<std::string_view> cells;
+  std::string_view line;
+  if (!lines.next(line)) {
+    return;
+  }
+  split_cells(line, ' ', cells);
+  const bool numbers =
+      std::all_of(cells.begin(), cells.end(), [](std::string_view cell) { return number_from(cell).has_value(); });
+  if (cells.size() == 12 && numbers) {
+    throw Error(ErrorKind::input, file.path, "is in KITTI's form, 12 numbers of a matrix on each line without a time",
+                "evo's kitti_poses_and_timestamps_to_trajectory.py makes a TUM file of it and its times.txt");
+  }
+}
+
 const CameraFormat& choose_format(const CameraFile& file, const std::string& name) {
   std::vector<std::string> names;
   for (const CameraFormat& format : formats()) {
@@ -41,6 +58,7 @@ const CameraFormat& choose_format(const CameraFile& file, const std::string& nam
   if (!name.empty()) {
     throw Error(ErrorKind::usage, "", unknown_name_message("camera path format", name, names));
   }
+  refuse_kitti(file);
   const auto best = std::max_element(formats().begin(), formats().end(),
                                      [&](const auto& a, const auto& b) { return a.sniff(file) < b.sniff(file); });
   if (!(best->sniff(file) > 0)) {

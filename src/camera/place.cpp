@@ -8,6 +8,17 @@
 
 namespace gazetrace {
 
+Projection fit_projection(Projection projection, int width_px, int height_px) {
+  const double wanted_px = projection.aspect * height_px;
+  if (wanted_px > width_px + 0.5) {
+    const double more = wanted_px / width_px;
+    projection.ymag_m *= more;
+    projection.yfov_rad = 2 * std::atan(std::tan(0.5 * projection.yfov_rad) * more);
+  }
+  projection.aspect = 0;
+  return projection;
+}
+
 CameraPath place_camera(CameraPath path, const CameraPlacement& placement) {
   if (placement == CameraPlacement{}) {
     return path;

@@ -67,9 +67,9 @@ std::int64_t time_at(std::string_view text, int exponent, const std::string& pla
 
 std::int64_t frame_time_at(std::int64_t number, std::int64_t first, const CameraReadOptions& options,
                            const std::string& place) {
-  std::int64_t frame = number;
-  const bool lost = !options.keep_time && (__builtin_sub_overflow(number, first, &frame) ||
-                                           __builtin_add_overflow(frame, std::int64_t{1}, &frame));
+  std::int64_t frame = 0;
+  const bool lost = __builtin_sub_overflow(number, options.keep_time ? options.first_frame : first, &frame) ||
+                    __builtin_add_overflow(frame, std::int64_t{1}, &frame);
   const auto t_ns = lost ? std::nullopt : mid_frame_ns(frame, options.fps, 0);
   if (!t_ns) {
     throw Error(ErrorKind::input, place,

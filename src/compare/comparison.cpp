@@ -10,6 +10,7 @@
 #include "compare/sequence_metric.hpp"
 #include "gazetrace/compare.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/fovvideovdp.hpp"
 
 namespace gazetrace {
 namespace {
@@ -34,6 +35,10 @@ MetricInfo known_metric(const std::string& name) {
 }
 
 }  // namespace
+
+std::string metric_unit(const std::string& metric) {
+  return metric == "psnr" ? "dB" : metric == "fovvideovdp" ? kFovVideoVdpUnit : "";
+}
 
 std::vector<MetricInfo> comparison_metrics() {
   std::vector<MetricInfo> all = metrics();

@@ -87,13 +87,15 @@ Picture read_picture(const std::string& path, const PictureLimits& limits = kPic
 ImageGray read_picture_channel(const std::string& path, const std::vector<std::string>& names);
 
 struct EncodeOptions {
-  int file_bits = 8;     // per channel, in the file: 8, 10 (DPX) or 16
-  int quality = 95;      // of JPEG
-  std::string software;  // the program's name, for the header
-  std::string note;      // one line of text for the header, which read_image_note() returns
+  int file_bits = 8;       // per channel, in the file: 8, 10 (DPX) or 16
+  int quality = 95;        // of JPEG
+  bool has_alpha = false;  // pixels are RGBA, with straight alpha
+  std::string software;    // the program's name, for the header
+  std::string note;        // one line of text for the header, which read_image_note() returns
 };
-// The bytes of a picture file in the format of `path`'s suffix; nothing is written. `rgb` is interleaved and has `bits`
-// bits (8 or 16) per channel: display code values, which are stored as they are. Error(runtime) that names `path`.
+// The bytes of a picture file in the format of `path`'s suffix; nothing is written. `rgb`, or RGBA, is interleaved and
+// has `bits` bits (8 or 16) per channel: display code values, which are stored as they are. Error(runtime) that names
+// `path`.
 std::vector<std::uint8_t> encode_image(const std::string& path, int width_px, int height_px, int bits,
                                        std::span<const std::uint8_t> rgb, const EncodeOptions& options);
 // The note; empty where the file cannot be opened or has none.

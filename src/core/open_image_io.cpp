@@ -182,8 +182,12 @@ std::string encode(const std::string& path, int width_px, int height_px, int bit
     return problem.empty() ? "no format of that name" : problem;
   }
   const OIIO::TypeDesc type = bits == 16 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
-  OIIO::ImageSpec spec(width_px, height_px, 3, options.file_bits > 8 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
+  OIIO::ImageSpec spec(width_px, height_px, options.has_alpha ? 4 : 3,
+                       options.file_bits > 8 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:BitsPerSample", options.file_bits);
+  if (options.has_alpha) {
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+  }
   const auto add_text = [&](const char* name, const std::string& value) {
     if (!value.empty()) {  // JPEG's writer ends the process when it gets an empty text
       spec.attribute(name, value);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_events.hpp"
@@ -12,15 +13,28 @@
 namespace gazetrace {
 namespace {
 
-std::int64_t frames_until(double end_ns, const JobSettings& job) {
-  // The last frame whose middle, start + (n - 1/2) / fps, is not after the end.
-  const double span_s = (end_ns - static_cast<double>(job.start.ns)) * 1e-9;
+// How many frames have their middle before a time, or at it. Middles are rounded to nanoseconds, as the times of a path
+// that was made for them are, so the number that floating point gives is corrected by comparing integers.
+std::int64_t frames_until(std::int64_t end_ns, const JobSettings& job) {
+  const double span_s = (static_cast<double>(end_ns) - static_cast<double>(job.start.ns)) * 1e-9;
   const double frames = span_s * static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator);
   if (!(frames < static_cast<double>(kMostPlannedFrames))) {
     throw Error(ErrorKind::usage, "`frames`", fmt::format("camera path or gaze log stand for {:.3g} frames", frames),
                 "name the frames to render, or check `gaze-scale`, `gaze-offset` and `fps`");
   }
-  return static_cast<std::int64_t>(std::max(std::floor(frames + 0.5), 1.0));
+  const auto is_before_end = [&](std::int64_t count) {
+    const auto middle_ns = mid_frame_ns(count, job.fps, job.start.ns);
+    return middle_ns && *middle_ns <= end_ns;
+  };
+  auto count = static_cast<std::int64_t>(std::max(std::floor(frames + 0.5), 0.0));
+  count += is_before_end(count + 1) ? 1 : 0;
+  count -= count > 0 && !is_before_end(count) ? 1 : 0;
+  return count;
+}
+
+std::int64_t nanoseconds(double t_ns) {
+  constexpr double kMost = 9e18;  // frames_until() refuses what is beyond
+  return static_cast<std::int64_t>(std::llround(std::clamp(t_ns, -kMost, kMost)));
 }
 
 std::int64_t last_motion_ns(const Scene* scene) {
@@ -112,27 +126,29 @@ std::vector<std::int32_t> choose_frames(const JobSettings& job, const ViewInputs
     decision = format_frame_list(job.frames->frames);
     return job.frames->frames;
   }
+  std::int64_t before = 0;
   std::int64_t count = 1;
   std::string reason = "nothing moves";
   if (!inputs.camera.is_static) {
-    count = frames_until(static_cast<double>(inputs.camera.end_ns), job);
+    count = frames_until(inputs.camera.end_ns, job);
+    if (job.camera_extrapolation == CameraExtrapolation::error && inputs.camera.begin_ns > 0) {
+      before = std::min(frames_until(inputs.camera.begin_ns - 1, job), std::max<std::int64_t>(count - 1, 0));
+    }
     reason = "as long as the camera's path";
   } else if (lasts(inputs.log)) {
     const GazeMapping mapping = gaze_mapping(job, inputs.log, inputs.taken_off_ns);
     const std::int64_t begin_ns = mapping.event_ns.value_or(inputs.log->samples.front().t_ns);
     const std::int64_t end_ns = inputs.log->trial ? inputs.log->trial->end_ns : inputs.log->samples.back().t_ns;
     const double span_ns = static_cast<double>(end_ns) - static_cast<double>(begin_ns);
-    count = frames_until(span_ns * mapping.scale + static_cast<double>(mapping.offset_ns), job);
+    count = frames_until(nanoseconds(span_ns * mapping.scale + static_cast<double>(mapping.offset_ns)), job);
     reason =
         inputs.log->trial ? fmt::format("as long as trial {}", inputs.log->trial->number) : "as long as the gaze log";
   } else if (const std::int64_t end_ns = last_motion_ns(inputs.scene); end_ns > 0) {
-    count = frames_until(static_cast<double>(end_ns), job);
+    count = frames_until(end_ns, job);
     reason = "as long as the scene's animation";
   }
-  std::vector<std::int32_t> frames(static_cast<std::size_t>(count));
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    frames[i] = static_cast<std::int32_t>(i) + 1;
-  }
+  std::vector<std::int32_t> frames(static_cast<std::size_t>(std::max<std::int64_t>(count - before, 1)));
+  std::iota(frames.begin(), frames.end(), job.first_frame + static_cast<std::int32_t>(before));
   decision = fmt::format("{} ({}; `frames` changes it)", format_frame_list(frames), reason);
   return frames;
 }

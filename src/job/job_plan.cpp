@@ -13,6 +13,7 @@
 #include "job/gaze_inputs.hpp"
 #include "job/outputs.hpp"
 #include "job/plan_settings.hpp"
+#include "pipeline/frame_part.hpp"
 
 namespace gazetrace {
 namespace {
@@ -55,6 +56,29 @@ void add_frames_around(const JobSettings& job, const CameraPath& camera, Resolve
   }
 }
 
+// Requests become windows of their frames.
+void keep_to_crop(const JobSettings& job, FramePlan& plan) {
+  if (!job.crop) {
+    return;
+  }
+  const PixelRect rect{job.crop->x_px, job.crop->y_px, job.crop->width_px, job.crop->height_px};
+  if (rect.right_px() > job.size.width || rect.bottom_px() > job.size.height) {
+    throw Error(ErrorKind::usage, "`crop`",
+                fmt::format("{} does not lie in a frame of {} x {} pixels", format_value(*job.crop), job.size.width,
+                            job.size.height),
+                "give X,Y of its top left corner, and its width and height");
+  }
+  if (follows_picture(job.foveation.sampling)) {
+    throw Error(ErrorKind::usage, "`crop`", "densities that are pictures are of whole frames",
+                "leave it out, or choose another `sampling`");
+  }
+  for (std::vector<FrameRequest>* frames : {&plan.frames, &plan.around}) {
+    for (FrameRequest& request : *frames) {
+      request = window_of(request, rect);
+    }
+  }
+}
+
 }  // namespace
 
 void keep_to_chunk(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved) {
@@ -80,6 +104,7 @@ void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t ta
   if (job.accumulate.mode == AccumulateMode::window) {
     add_frames_around(job, camera, resolved);
   }
+  keep_to_crop(job, resolved.plan);
   if (resolved.plan.ages && !job.gaze_at) {
     resolved.decisions.emplace_back("effective gaze age", gaze_ages_text(*resolved.plan.ages));
   }

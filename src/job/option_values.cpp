@@ -281,6 +281,16 @@ void parse_value(std::string_view text, const std::string& place, FrameRect& val
   }
 }
 
+void parse_value(std::string_view text, const std::string& place, FrameCrop& value) {
+  constexpr std::string_view kWanted = "a rectangle in pixels of the frame: X,Y,WIDTH,HEIGHT";
+  const auto [x, y, w, h] = split_exactly<4>(text, place, kWanted);
+  const auto side = [&](std::string_view part) { return int{parse_number<std::uint16_t>(part, place, kWanted)}; };
+  value = {side(x), side(y), side(w), side(h)};
+  if (value.width_px == 0 || value.height_px == 0) {
+    reject(text, place, "a rectangle with positive width and height");
+  }
+}
+
 void parse_value(std::string_view text, const std::string& place, PixelIndex& value) {
   constexpr std::string_view kWanted = "a pixel: X,Y counted from 0 at the top left";
   const auto [x, y] = split_exactly<2>(text, place, kWanted);
@@ -405,6 +415,10 @@ std::string format_value(const Vec3d& value) {
 
 std::string format_value(const FrameRect& value) {
   return format_value(Vec2d{value.x_px, value.y_px}) + "," + format_value(Vec2d{value.width_px, value.height_px});
+}
+
+std::string format_value(const FrameCrop& value) {
+  return fmt::format("{},{},{},{}", value.x_px, value.y_px, value.width_px, value.height_px);
 }
 
 std::string format_value(const PixelIndex& value) {

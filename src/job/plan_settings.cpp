@@ -31,6 +31,7 @@ PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_
   PlanSettings settings;
   settings.frames = frames;
   settings.fps = job.fps;
+  settings.first_frame = job.first_frame;
   settings.start_ns = job.start.ns;
   settings.shutter = job.shutter;
   settings.camera_extrapolation = job.camera_extrapolation;

@@ -119,6 +119,7 @@ CameraPath camera_without_lens(const JobSettings& job, const Scene* scene, const
       options.yfov_rad = checked_yfov_rad(*job.yfov_deg);
     }
     options.fps = job.camera_fps.value_or(job.fps);
+    options.first_frame = job.first_frame;
     decision = job.camera_path;
     return place_camera(load_camera_path(job.camera_path, options), placement_of(job));
   }
@@ -142,7 +143,14 @@ CameraPath camera_without_lens(const JobSettings& job, const Scene* scene, const
         throw Error(ErrorKind::usage, "`yfov`", fmt::format("camera '{}' is orthographic", chosen.name));
       }
       camera.projection.yfov_rad = checked_yfov_rad(*job.yfov_deg);
+      camera.projection.aspect = 0;
     }
+    const Projection fitted = fit_projection(camera.projection, job.size.width, job.size.height);
+    if (fitted.yfov_rad != camera.projection.yfov_rad || fitted.ymag_m != camera.projection.ymag_m) {
+      decision += fmt::format(", higher than it states, so that its width of {:.4g} heights is in the frame",
+                              camera.projection.aspect);
+    }
+    camera.projection = fitted;
   }
   return camera;
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/statistics.hpp"
 #include "gazetrace/error.hpp"
@@ -69,27 +70,23 @@ FlipExposures flip_exposures(const ImageRgb& reference, const FlipExposureSettin
   std::vector<float> luminance;
   luminance.reserve(reference.pixels.size());
   for (const Vec3f& pixel : reference.pixels) {
-    const float y = kRed * pixel.x + kGreen * pixel.y + kBlue * pixel.z;
-    if (y > 0) {
-      luminance.push_back(y);
-    }
+    luminance.push_back(kRed * pixel.x + kGreen * pixel.y + kBlue * pixel.z);
   }
   FlipExposures exposures;
-  if (!luminance.empty()) {
+  const float most = luminance.empty() ? 0 : *std::max_element(luminance.begin(), luminance.end());
+  if (most > 0) {
     const double x_max = bright_end(settings.tone_mapper);
-    // The upper median of all pixels; where that is black, of the pixels that are not.
-    const std::size_t dark = reference.pixels.size() - luminance.size();
-    const std::size_t half = reference.pixels.size() / 2;
-    const std::size_t rank = half >= dark ? half - dark : luminance.size() / 2;
-    const float middle = value_at_rank(luminance, rank);
-    exposures.start_ev = std::log2(x_max / *std::max_element(luminance.begin(), luminance.end()));
-    exposures.stop_ev = std::log2(x_max / middle);
+    const float median = value_at_rank(luminance, luminance.size() / 2);
+    exposures.start_ev = std::log2(x_max / most);
+    // The authors' program takes no darker median, and ends where all light is below it.
+    constexpr float kLeastMedian = std::numeric_limits<float>::epsilon();
+    exposures.stop_ev = std::log2(x_max / std::min(std::max(median, kLeastMedian), most));
   }
   exposures.start_ev = settings.start_ev.value_or(exposures.start_ev);
   exposures.stop_ev = settings.stop_ev.value_or(exposures.stop_ev);
   if (settings.count) {
     exposures.count = *settings.count;
-  } else if (!luminance.empty() || exposures.start_ev != exposures.stop_ev) {
+  } else if (most > 0 || exposures.start_ev != exposures.stop_ev) {
     exposures.count = std::max(2, static_cast<int>(std::ceil(exposures.stop_ev - exposures.start_ev)));
   }
   check_flip_exposures(exposures);

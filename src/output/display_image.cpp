@@ -2,7 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <limits>
 
 #include "core/image_io.hpp"
 #include "gazetrace/output.hpp"
@@ -15,14 +18,15 @@ namespace {
 struct Format {
   std::string_view suffix;
   int min_bits, max_bits;
+  bool has_alpha;
   int max_side_px;  // what the file's header or the library that writes it can hold; some of these end the process
 };
-constexpr std::array<Format, 6> kFormats{{{".png", 8, 16, 1000000},
-                                          {".jpg", 8, 8, 65500},
-                                          {".jpeg", 8, 8, 65500},
-                                          {".tif", 8, 16, 1000000},
-                                          {".tiff", 8, 16, 1000000},
-                                          {".dpx", 10, 10, 1000000}}};
+constexpr std::array<Format, 6> kFormats{{{".png", 8, 16, true, 1000000},
+                                          {".jpg", 8, 8, false, 65500},
+                                          {".jpeg", 8, 8, false, 65500},
+                                          {".tif", 8, 16, true, 1000000},
+                                          {".tiff", 8, 16, true, 1000000},
+                                          {".dpx", 10, 10, false, 1000000}}};
 
 const Format& format_of(const std::string& path) {
   std::string suffix = std::filesystem::path(path).extension().string();
@@ -38,7 +42,24 @@ const Format& format_of(const std::string& path) {
               "use .png, .jpg, .jpeg, .tif, .tiff or .dpx, or .exr for scene-linear light");
 }
 
+template <class T>
+std::vector<std::uint8_t> with_alpha(const std::vector<std::uint8_t>& rgb, const ImageGray& alpha) {
+  constexpr std::size_t kColor = 3 * sizeof(T);
+  constexpr auto kOne = static_cast<float>(std::numeric_limits<T>::max());
+  std::vector<std::uint8_t> rgba(alpha.pixels.size() * (kColor + sizeof(T)));
+  for (std::size_t i = 0; i < alpha.pixels.size(); ++i) {
+    const T code = static_cast<T>(std::lround(alpha.pixels[i] * kOne));
+    std::memcpy(&rgba[i * (kColor + sizeof(T))], &rgb[i * kColor], kColor);
+    std::memcpy(&rgba[i * (kColor + sizeof(T)) + kColor], &code, sizeof(T));
+  }
+  return rgba;
+}
+
 }  // namespace
+
+bool holds_alpha(const DisplaySettings& settings) {
+  return format_of(settings.pattern).has_alpha;
+}
 
 int display_image_bits(const DisplaySettings& settings) {
   const Format& format = format_of(settings.pattern);
@@ -70,7 +91,7 @@ void check_display_image_size(const DisplaySettings& settings, int width_px, int
 }
 
 WrittenFile write_display_image(const std::string& path, const DisplayImage& image, const FrameHeader& header,
-                                const DisplaySettings& settings) {
+                                const DisplaySettings& settings, const ImageGray* alpha) {
   const Format& format = format_of(path);
   EncodeOptions options;
   options.file_bits = std::clamp(image.bits, format.min_bits, format.max_bits);
@@ -81,8 +102,13 @@ WrittenFile write_display_image(const std::string& path, const DisplayImage& ima
   if (const GazeAtTime& gaze = header.gaze_true; gaze.state != GazeState::none || gaze.no_gaze || gaze.movement) {
     options.note += " " + gaze_words(gaze);
   }
+  options.has_alpha = alpha != nullptr;
   const std::vector<std::uint8_t> bytes =
-      encode_image(path, image.width_px, image.height_px, image.bits, image.bytes, options);
+      encode_image(path, image.width_px, image.height_px, image.bits,
+                   alpha == nullptr  ? image.bytes
+                   : image.bits == 8 ? with_alpha<std::uint8_t>(image.bytes, *alpha)
+                                     : with_alpha<std::uint16_t>(image.bytes, *alpha),
+                   options);
   return write_frame_file(path, header.frame, std::as_bytes(std::span(bytes)));
 }
 

@@ -110,7 +110,11 @@ void add_aov(ExrPicture& picture, const std::string& aov, const FrameImages& ima
   if (aov == "albedo" || aov == "normal") {
     const ImageRgb& image = aov == "albedo" ? frame.albedo : frame.normal;
     require(aov, !image.empty());
-    picture.add_half_rgb(names_of(aov, aov == "albedo" ? "RGB" : "XYZ"), image);
+    if (aov == "albedo") {
+      picture.add_color(names_of(aov, "RGB"), image, ExrPixels::half);
+    } else {
+      picture.add_half_rgb(names_of(aov, "XYZ"), image);
+    }
   } else if (aov == "depth") {
     require(aov, !frame.depth_m.empty());
     add_depth(picture, frame.depth_m, settings.sky_depth_m);
@@ -134,7 +138,7 @@ void add_aov(ExrPicture& picture, const std::string& aov, const FrameImages& ima
   } else if (const auto& groups = light_group_names(); std::find(groups.begin(), groups.end(), aov) != groups.end()) {
     require(aov, images.layers.light.size() == groups.size());
     const auto group = static_cast<std::size_t>(std::find(groups.begin(), groups.end(), aov) - groups.begin());
-    picture.add_light(names_of(aov, "RGB"), images.layers.light[group]);
+    picture.add_color(names_of(aov, "RGB"), images.layers.light[group], settings.pixels);
   } else if (!add_cryptomatte(picture, aov, images)) {
     throw Error(ErrorKind::usage, "", unknown_name_message("AOV", aov, aov_names()));
   }
@@ -146,9 +150,14 @@ WrittenExr write_frame_exr(const std::string& path, const Frame& frame, const Im
                            const FrameHeader& header, const ExrSettings& settings, int threads,
                            const FrameLayers& layers) {
   ExrPicture picture(frame.radiance.width_px, frame.radiance.height_px, settings, resolve_threads(threads));
-  describe(picture.header(), header, static_cast<double>(frame.radiance.width_px) / frame.radiance.height_px);
+  picture.place(header.window);
+  describe(picture.header(), header, settings.space);
   picture.begin_layer("beauty");
-  picture.add_light({"R", "G", "B"}, frame.radiance);
+  picture.add_color({"R", "G", "B"}, frame.radiance, settings.pixels);
+  if (settings.alpha) {
+    require("alpha", !layers.alpha.empty());
+    picture.add_share("A", layers.alpha);
+  }
   for (const std::string& aov : settings.aovs) {
     add_aov(picture, aov, {frame, layers, eccentricity_deg}, settings);
   }
@@ -156,7 +165,8 @@ WrittenExr write_frame_exr(const std::string& path, const Frame& frame, const Im
   return {picture.clamped(), std::move(file)};
 }
 
-WrittenFile write_sampling_map_exr(const std::string& path, const SamplingMap& map, const ImageGray* eccentricity_deg) {
+WrittenFile write_sampling_map_exr(const std::string& path, const SamplingMap& map, const ImageGray* eccentricity_deg,
+                                   const FrameWindow& window) {
   ImageGray region(map.width_px, map.height_px);
   std::copy(map.region.pixels.begin(), map.region.pixels.end(), region.pixels.begin());
   const ImageGray density = samples_per_pixel(map);
@@ -164,6 +174,7 @@ WrittenFile write_sampling_map_exr(const std::string& path, const SamplingMap& m
   settings.compression = "zip";
   settings.zip_level = kMapZipLevel;
   ExrPicture picture(map.width_px, map.height_px, settings, 1);
+  picture.place(window);
   picture.begin_layer("map");
   for (std::size_t i = 0; i < map.regions.size(); ++i) {
     add_text(picture.header(), fmt::format("region_{}", i), map.regions[i].name);

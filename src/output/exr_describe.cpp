@@ -27,9 +27,35 @@ void add_text(Imf::Header& header, const std::string& name, const std::string& v
 
 namespace {
 
-void add_color_space(Imf::Header& header) {
-  Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec.709 with D65
-  header.insert("colorSpace", Imf::StringAttribute("lin_rec709"));
+// The primaries of SMPTE ST 2065-1 (AP0) and S-2014-004 (AP1, of ACEScg) with ACES' white, and the way to them from
+// Rec.709 (SMPTE RP 177) with Bradford's adaptation: AP1's matrix is that of the public ACES configurations.
+struct SpaceInfo {
+  const char* name;
+  std::array<Vec2f, 4> chromaticities;  // of red, green, blue and white
+  std::array<Vec3f, 3> from_rec709;
+};
+const SpaceInfo& info_of(ExrSpace space) {
+  static constexpr Vec2f kAcesWhite{0.32168F, 0.33767F};
+  static const SpaceInfo kRec709{
+      "lin_rec709", {Vec2f{0.64F, 0.33F}, {0.3F, 0.6F}, {0.15F, 0.06F}, {0.3127F, 0.329F}}, {}};
+  static const SpaceInfo kAcesCg{"ACEScg",
+                                 {Vec2f{0.713F, 0.293F}, {0.165F, 0.83F}, {0.128F, 0.044F}, kAcesWhite},
+                                 {Vec3f{0.613097402F, 0.339523146F, 0.047379451F},
+                                  {0.070193722F, 0.916353879F, 0.013452398F},
+                                  {0.020615593F, 0.109569773F, 0.869814634F}}};
+  static const SpaceInfo kAces{"ACES2065-1",
+                               {Vec2f{0.7347F, 0.2653F}, {0, 1}, {0.0001F, -0.077F}, kAcesWhite},
+                               {Vec3f{0.439632982F, 0.382988698F, 0.177378320F},
+                                {0.089776443F, 0.813439429F, 0.096784128F},
+                                {0.017541170F, 0.111546553F, 0.870912276F}}};
+  return space == ExrSpace::acescg ? kAcesCg : space == ExrSpace::aces2065_1 ? kAces : kRec709;
+}
+
+void add_color_space(Imf::Header& header, ExrSpace space) {
+  const SpaceInfo& info = info_of(space);
+  const auto place = [&](std::size_t i) { return Imath::V2f(info.chromaticities[i].x, info.chromaticities[i].y); };
+  Imf::addChromaticities(header, {place(0), place(1), place(2), place(3)});
+  header.insert("colorSpace", Imf::StringAttribute(info.name));
 }
 
 // From world space to the camera space of the EXR standard, which is left-handed with +z forward. Imath multiplies row
@@ -111,8 +137,16 @@ void add_gaze_numbers(Imf::Header& header, const GazeNumbers& gaze) {
 
 }  // namespace
 
-void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
-  add_color_space(header);
+std::optional<std::array<Vec3f, 3>> matrix_to(ExrSpace space) {
+  return space == ExrSpace::rec709 ? std::nullopt : std::optional(info_of(space).from_rec709);
+}
+
+void describe(Imf::Header& header, const FrameHeader& frame, ExrSpace space) {
+  Camera camera = frame.camera;
+  camera.projection = frame.window.is_part() ? frame.window.projection : camera.projection;
+  const Imath::V2i corner = header.displayWindow().size();  // the last pixel
+  const double aspect = (corner.x + 1.0) / (corner.y + 1.0);
+  add_color_space(header, space);
   header.insert("software", Imf::StringAttribute(frame.software));
   if (frame.fps.numerator <= std::numeric_limits<int>::max() &&
       frame.fps.denominator <= std::numeric_limits<int>::max()) {
@@ -121,9 +155,9 @@ void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
   }
   add_time_code(header, frame);
   add_gaze_numbers(header, frame.gaze);
-  const Imath::M44d to_camera = world_to_camera(frame.camera.pose);
+  const Imath::M44d to_camera = world_to_camera(camera.pose);
   Imf::addWorldToCamera(header, Imath::M44f(to_camera));
-  Imf::addWorldToNDC(header, Imath::M44f(to_camera * camera_to_ndc(frame.camera.projection, aspect)));
+  Imf::addWorldToNDC(header, Imath::M44f(to_camera * camera_to_ndc(camera.projection, aspect)));
   header.insert("gazetrace:frame", Imf::IntAttribute(frame.frame));
   header.insert("gazetrace:exposure_ev", Imf::DoubleAttribute(frame.exposure_ev));
   // Stored as text, since there is no attribute type for 64-bit integers.
@@ -136,7 +170,7 @@ void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
   if (frame.samples_per_pixel > 0) {
     add_text(header, "samples_per_pixel", fmt::format("{}", frame.samples_per_pixel));
   }
-  add_text(header, "camera", camera_text(frame.camera));
+  add_text(header, "camera", camera_text(camera));
   if (frame.shutter_close_ns > frame.shutter_open_ns) {
     add_text(header, "shutter_ns", fmt::format("{},{}", frame.shutter_open_ns, frame.shutter_close_ns));
   }

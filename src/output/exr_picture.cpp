@@ -22,6 +22,7 @@
 #include "core/parallel.hpp"
 #include "gazetrace/error.hpp"
 #include "output/exr.hpp"
+#include "output/exr_describe.hpp"
 #include "output/exr_seal.hpp"
 #include "output/written_file.hpp"
 
@@ -108,6 +109,14 @@ ExrPicture::ExrPicture(int width_px, int height_px, const ExrSettings& settings,
   header_.zipCompressionLevel() = settings.zip_level;
 }
 
+void ExrPicture::place(const FrameWindow& window) {
+  if (window.is_part()) {
+    const Imath::V2i first(window.x_px, window.y_px);
+    header_.dataWindow() = {first, first + Imath::V2i(width_px_ - 1, height_px_ - 1)};
+    header_.displayWindow() = {{0, 0}, {window.frame_width_px - 1, window.frame_height_px - 1}};
+  }
+}
+
 void ExrPicture::begin_layer(const std::string& name) {
   if (parts_.empty() || settings_.parts == ExrParts::multi) {
     parts_.emplace_back().name = name;
@@ -137,10 +146,8 @@ void ExrPicture::add_float_rgb(const std::array<std::string, 3>& names, const Im
   }
 }
 
-void ExrPicture::add_half_rgb(const std::array<std::string, 3>& names, const ImageRgb& image) {
+std::vector<half>& ExrPicture::halves_of(const float* values, std::size_t count) {
   constexpr std::size_t kRun = 16384;
-  const float* values = &image.pixels.data()->x;
-  const std::size_t count = image.pixels.size() * 3;
   std::vector<half>& halves = halves_.emplace_back(count);
   std::atomic<std::uint64_t> clamped{0};
   parallel_for((count + kRun - 1) / kRun, threads_, [&](std::size_t run) {
@@ -154,22 +161,44 @@ void ExrPicture::add_half_rgb(const std::array<std::string, 3>& names, const Ima
     clamped += here;
   });
   clamped_ += clamped;
+  return halves;
+}
+
+void ExrPicture::add_half_rgb(const std::array<std::string, 3>& names, const ImageRgb& image) {
+  const std::vector<half>& halves = halves_of(&image.pixels.data()->x, image.pixels.size() * 3);
   for (std::size_t c = 0; c < 3; ++c) {
     insert(names[c], Imf::HALF, reinterpret_cast<const char*>(&halves[c]), 3 * sizeof(half));
   }
 }
 
-void ExrPicture::add_light(const std::array<std::string, 3>& names, const ImageRgb& image) {
-  if (settings_.pixels == ExrPixels::half) {
-    add_half_rgb(names, image);
+void ExrPicture::add_color(const std::array<std::string, 3>& names, const ImageRgb& image, ExrPixels pixels) {
+  const ImageRgb* shown = &image;
+  if (const auto matrix = matrix_to(settings_.space)) {
+    ImageRgb& converted = own_rgb_.emplace_back(image);
+    for (Vec3f& pixel : converted.pixels) {
+      pixel = {dot((*matrix)[0], pixel), dot((*matrix)[1], pixel), dot((*matrix)[2], pixel)};
+    }
+    shown = &converted;
+  }
+  if (pixels == ExrPixels::half) {
+    add_half_rgb(names, *shown);
   } else {
-    add_float_rgb(names, image);
+    add_float_rgb(names, *shown);
+  }
+}
+
+void ExrPicture::add_share(const std::string& name, const ImageGray& image) {
+  if (settings_.pixels == ExrPixels::half) {
+    const std::vector<half>& halves = halves_of(image.pixels.data(), image.pixels.size());
+    insert(name, Imf::HALF, reinterpret_cast<const char*>(halves.data()), sizeof(half));
+  } else {
+    insert(name, Imf::FLOAT, reinterpret_cast<const char*>(image.pixels.data()), sizeof(float));
   }
 }
 
 // All of a part's own, and of the whole file's header all of it in the first part, elsewhere what readers need there.
 Imf::Header ExrPicture::header_of(const Part& part, bool first) const {
-  Imf::Header header = first ? header_ : Imf::Header(width_px_, height_px_);
+  Imf::Header header = first ? header_ : Imf::Header(header_.displayWindow(), header_.dataWindow());
   if (first) {
     add_room_for_seal(header);
   } else {
@@ -226,9 +255,12 @@ WrittenFile ExrPicture::write(const std::string& path, std::int32_t frame) {
 
 void ExrPicture::insert(const std::string& name, Imf::PixelType type, const char* first, std::size_t stride) {
   parts_.back().channels.insert(name, Imf::Channel(type));
-  // OpenEXR only reads through this pointer, although its type is char*.
-  parts_.back().buffer.insert(
-      name, Imf::Slice(type, const_cast<char*>(first), stride, stride * static_cast<std::size_t>(width_px_)));
+  // OpenEXR only reads through this pointer, although its type is char*. It counts pixels from the frame's corner.
+  const std::size_t row = stride * static_cast<std::size_t>(width_px_);
+  const Imath::V2i corner = header_.dataWindow().min;
+  const auto before = static_cast<std::ptrdiff_t>(corner.x) * static_cast<std::ptrdiff_t>(stride) +
+                      static_cast<std::ptrdiff_t>(corner.y) * static_cast<std::ptrdiff_t>(row);
+  parts_.back().buffer.insert(name, Imf::Slice(type, const_cast<char*>(first) - before, stride, row));
 }
 
 }  // namespace gazetrace

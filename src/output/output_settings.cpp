@@ -109,6 +109,7 @@ LayerSettings layer_settings(const ExrSettings& exr) {
   layers.forward = wants("forward");
   layers.backward = wants("backward");
   layers.position = wants("position");
+  layers.alpha = exr.alpha;
   layers.light = std::any_of(light_group_names().begin(), light_group_names().end(), wants);
   for (const std::string& layer : cryptomatte_layers()) {
     if (wants(layer)) {
@@ -140,6 +141,10 @@ void check_output_settings(const OutputSettings& settings, bool several_frames) 
   check_layers(settings.exr);
   if (!settings.map_pattern.empty()) {
     check_exr_name(settings.map_pattern, several_frames);
+  }
+  if (settings.exr.alpha && !settings.display.pattern.empty() && !holds_alpha(settings.display)) {
+    throw Error(ErrorKind::usage, settings.display.pattern, "such a file holds no alpha",
+                "write .png, .tif or .exr, or leave `alpha` out");
   }
   if (!settings.display.pattern.empty()) {
     frame_file_name(settings.display.pattern, 1, several_frames);

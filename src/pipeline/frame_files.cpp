@@ -29,6 +29,7 @@ FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const 
   header.t_video_ns = request.t_video_ns;
   header.fps = settings.fps;
   header.camera = request.camera;
+  header.window = request.window;
   header.shutter_open_ns = request.shutter_open_ns;
   header.shutter_close_ns = request.shutter_close_ns;
   header.gaze_render = request.gaze_render;
@@ -42,6 +43,15 @@ FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const 
   header.samples_per_pixel = samples_of_every_pixel(rendered.frame.sample_count);
   header.software = std::string("gazetrace ") + kVersion;
   return header;
+}
+
+// The light of the surfaces alone, of pixels that they cover in part.
+ImageRgb straight(const ImageRgb& radiance, const ImageGray& alpha) {
+  ImageRgb color = radiance;
+  for (std::size_t i = 0; i < color.pixels.size(); ++i) {
+    color.pixels[i] = alpha.pixels[i] > 0 ? radiance.pixels[i] / alpha.pixels[i] : Vec3f{};
+  }
+  return color;
 }
 
 // Whether half of the pixels are below 2 % of white in every colour.
@@ -92,21 +102,22 @@ void write_frame_files(const FrameRequest& request, const FramePlan& plan, const
   const ImageGray* eccentricity_deg = eccentricity ? &*eccentricity : nullptr;
   if (!output.map_pattern.empty()) {
     const std::string path = frame_file_name(output.map_pattern, request.frame);
-    list(path, write_sampling_map_exr(path, rendered.map, eccentricity_deg));
+    list(path, write_sampling_map_exr(path, rendered.map, eccentricity_deg, request.window));
   }
   row.write_ms += map_watch.elapsed_ms();
   if (!output.display.pattern.empty()) {
     std::uint64_t clamped = 0;
+    const ImageGray& alpha = rendered.layers.alpha;
     const DisplayImage image = timed(row.color_ms, [&] {
-      return color.apply(rendered.frame.radiance, rendered.exposure_ev, display_image_bits(output.display),
-                         settings.threads, &clamped);
+      return color.apply(alpha.empty() ? rendered.frame.radiance : straight(rendered.frame.radiance, alpha),
+                         rendered.exposure_ev, display_image_bits(output.display), settings.threads, &clamped);
     });
     const Stopwatch watch;
     const std::string path = frame_file_name(output.display.pattern, request.frame);
-    list(path, write_display_image(path, image, header, output.display));
+    list(path, write_display_image(path, image, header, output.display, alpha.empty() ? nullptr : &alpha));
     row.write_ms += watch.elapsed_ms();
     result.clamped_view_pixels += clamped;
-    result.dark_pictures += is_dark(image) ? 1 : 0;
+    result.dark_pictures += alpha.empty() && is_dark(image) ? 1 : 0;
   }
   if (!output.exr.pattern.empty()) {
     const std::string path = frame_file_name(output.exr.pattern, request.frame);

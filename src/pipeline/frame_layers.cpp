@@ -25,6 +25,18 @@ Image<Vec2f> vectors_to(const SurfaceMotion& motion) {
   return vectors;
 }
 
+// Where blocks and filters let light of surfaces run over their edges.
+void blacken_uncovered(FrameLayers& layers, ImageRgb& radiance) {
+  for (std::size_t i = 0; i < layers.alpha.pixels.size(); ++i) {
+    if (layers.alpha.pixels[i] == 0) {
+      radiance.pixels[i] = {};
+      for (ImageRgb& light : layers.light) {
+        light.pixels[i] = {};
+      }
+    }
+  }
+}
+
 OtherView view_of(const NeighborView& neighbor, const Camera& camera) {
   OtherView view{camera, neighbor.t_video_ns};
   view.camera.pose = neighbor.pose;
@@ -69,10 +81,13 @@ void FrameRenderer::add_layers(const FrameRequest& request, std::vector<ImageRgb
       scale_to_picture(rendered.frame.radiance, layers.light);
     }
     const PosedScene scene = tracer_->at({request.shutter_open_ns, request.shutter_close_ns});
-    if (tables_) {
+    if (tables_ || wanted.alpha) {
       std::vector<SurfaceIds> surfaces;
-      for (const MatteTable& table : *tables_) {
-        surfaces.push_back(table.surfaces);
+      for (std::size_t i = 0; tables_ && i < tables_->size(); ++i) {
+        surfaces.push_back((*tables_)[i].surfaces);
+      }
+      if (wanted.alpha) {
+        surfaces.push_back({false, std::vector<std::uint32_t>(tracer_->scene().instances.size(), 1)});
       }
       CoverageSettings coverage = wanted.coverage;
       coverage.filter = settings_.trace.filter;
@@ -81,6 +96,11 @@ void FrameRenderer::add_layers(const FrameRequest& request, std::vector<ImageRgb
       layers.tables = tables_;
       layers.mattes =
           scene.coverage(request.camera, request.frame, request.width_px, request.height_px, surfaces, coverage);
+      if (wanted.alpha) {
+        layers.alpha = std::move(layers.mattes.back().share.front());
+        layers.mattes.pop_back();
+        blacken_uncovered(layers, rendered.frame.radiance);
+      }
     }
     const auto motion_to = [&](const NeighborView& neighbor) {
       return scene.surface_motion(request.camera, request.width_px, request.height_px,

@@ -23,4 +23,10 @@ FrameRequest part_of(const FrameRequest& frame, const PixelRect& rect) {
   return part;
 }
 
+FrameRequest window_of(const FrameRequest& frame, const PixelRect& rect) {
+  FrameRequest part = part_of(frame, rect);
+  part.window = {rect.x_px, rect.y_px, frame.width_px, frame.height_px, frame.camera.projection};
+  return part;
+}
+
 }  // namespace gazetrace

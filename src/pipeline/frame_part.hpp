@@ -24,6 +24,8 @@ struct PixelRect {
 // The request of what lies in `rect`, which must lie in the frame. Its camera and view show what those of the whole
 // frame show there; samples are numbered within the rectangle and are others.
 FrameRequest part_of(const FrameRequest& frame, const PixelRect& rect);
+// The same as a window of its frame: its samples are those that the whole frame has there.
+FrameRequest window_of(const FrameRequest& frame, const PixelRect& rect);
 
 // What an image shows in `rect`, which must lie in it.
 template <class T>

@@ -37,7 +37,17 @@ std::shared_ptr<const LearnedLight> FrameRenderer::learned_light(const PosedScen
   }
   if (!knows_light(known, request)) {
     known = {};
-    LightLearning learning = scene.learn_light(request.camera, request.width_px, request.height_px, settings_.trace);
+    // A part of a frame knows what the frame does.
+    const FrameWindow& window = request.window;
+    Camera camera = request.camera;
+    if (window.is_part()) {
+      camera.projection = window.projection;
+      camera.middle_px.x -= window.x_px + 0.5 * (request.width_px - window.frame_width_px);
+      camera.middle_px.y -= window.y_px + 0.5 * (request.height_px - window.frame_height_px);
+    }
+    LightLearning learning =
+        scene.learn_light(camera, window.is_part() ? window.frame_width_px : request.width_px,
+                          window.is_part() ? window.frame_height_px : request.height_px, settings_.trace);
     stats.learning_paths += learning.paths;
     known = {request, std::move(learning.light)};
   }
@@ -82,6 +92,8 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request, KnownLight& known)
   traced.map = timed(times.plan_ms, [&] {
     return make_sampling_map(foveation, request.view, request.gaze_direction_render, context);
   });
+  traced.map.x_px = request.window.x_px;
+  traced.map.y_px = request.window.y_px;
   TraceSettings settings = reconstruction_.trace_settings(frame_settings.trace);
   settings.light_groups = settings_.layers.light;
   settings.surfaces = settings.surfaces || settings_.accumulate.mode == AccumulateMode::window;

@@ -16,8 +16,12 @@ std::string seconds(std::int64_t t_ns) {
   return fmt::format("{:.3f} s", static_cast<double>(t_ns) * 1e-9);
 }
 
+std::optional<std::int64_t> time_if_any_ns(const PlanSettings& settings, std::int64_t frame) {
+  return mid_frame_ns(frame - settings.first_frame + 1, settings.fps, settings.start_ns);
+}
+
 std::int64_t frame_time_ns(const PlanSettings& settings, std::int32_t frame) {
-  const auto t_ns = mid_frame_ns(frame, settings.fps, settings.start_ns);
+  const auto t_ns = time_if_any_ns(settings, frame);
   if (!t_ns) {
     throw Error(ErrorKind::usage, "", fmt::format("frame {} lies beyond int64 nanoseconds", frame),
                 "check `frames`, `fps` and `start`");
@@ -32,15 +36,18 @@ void check_settings(const PlanSettings& settings) {
   if (settings.fps.numerator <= 0 || settings.fps.denominator <= 0) {
     throw Error(ErrorKind::usage, "", fmt::format("a frame rate of {} is not positive", to_string(settings.fps)));
   }
-  if (*std::min_element(settings.frames.begin(), settings.frames.end()) < 1) {
-    throw Error(ErrorKind::usage, "", "frames are numbered from 1", "give `frames`");
+  const std::int32_t least = *std::min_element(settings.frames.begin(), settings.frames.end());
+  if (least < settings.first_frame) {
+    throw Error(ErrorKind::usage, "`frames`",
+                fmt::format("frame {} does not exist: frames are numbered from {}", least, settings.first_frame),
+                "name others, or change `first-frame`");
   }
   if (settings.gaze_latency_ns < 0) {
     throw Error(ErrorKind::usage, "", "a negative gaze latency would look ahead", "give `gaze-latency` of 0 or more");
   }
 }
 
-// start + (frame - 1 + part) / fps, for times inside a frame, where half a nanosecond does not matter.
+// start + (frame - first + part) / fps, for times inside a frame, where half a nanosecond does not matter.
 std::int64_t time_in_frame_ns(const PlanSettings& settings, std::int32_t frame, double part) {
   const double period_ns =
       1e9 * static_cast<double>(settings.fps.denominator) / static_cast<double>(settings.fps.numerator);
@@ -104,12 +111,12 @@ std::int64_t earlier(std::int64_t t_ns, std::int64_t by_ns) {
 }
 
 // The frame before this one. For the first of the list it is guessed: frames before it are taken to be as far apart as
-// those after it, and where that would be below 1, it is the frame itself.
-std::int32_t likely_predecessor(const std::vector<std::int32_t>& frames, std::size_t index) {
+// those after it, and where that would be before the video's first, it is the frame itself.
+std::int32_t likely_predecessor(const std::vector<std::int32_t>& frames, std::size_t index, std::int32_t first) {
   const std::int32_t frame = frames[index];
   const std::size_t next = std::max<std::size_t>(index, 1);
   const std::int32_t step = next < frames.size() ? frames[next] - frames[next - 1] : 1;
-  return frame > step ? frame - step : frame;
+  return frame - step >= first ? frame - step : frame;
 }
 
 void say_what_the_eye_did(FrameRequest& request, std::int32_t frame_before, const GazeMotion& motion,
@@ -235,7 +242,8 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
         request.gaze_effective_age_ns = std::llround(static_cast<double>(*age_ns) * settings.gaze.scale);
       }
       request.eye_in_saccade = motion.in_saccade(request.gaze_render.t_log_ns);
-      say_what_the_eye_did(request, likely_predecessor(settings.frames, plan.frames.size()), motion, *log, settings);
+      say_what_the_eye_did(request, likely_predecessor(settings.frames, plan.frames.size(), settings.first_frame),
+                           motion, *log, settings);
       geometry.settle(request.gaze_render);
       geometry.settle(request.gaze_true);
       request.gaze_direction_render = geometry.direction(request.gaze_render);
@@ -255,10 +263,10 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
 }
 
 bool has_frame(const CameraPath& camera, const PlanSettings& settings, std::int64_t frame) {
-  if (frame < 1 || frame > std::numeric_limits<std::int32_t>::max()) {
+  if (frame < settings.first_frame || frame > std::numeric_limits<std::int32_t>::max()) {
     return false;
   }
-  const auto t_ns = mid_frame_ns(static_cast<std::int32_t>(frame), settings.fps, settings.start_ns);
+  const auto t_ns = time_if_any_ns(settings, frame);
   return t_ns && covers(camera, *t_ns);
 }
 

@@ -52,7 +52,7 @@ std::string results_csv(const Results& results) {
   text +=
       ",resolution_scale,repeats,samples,spp_mean,rays,peak_mib,task,time_s,time_low_s,time_high_s,speed_up,speed_up_"
       "low,"
-      "speed_up_high,end_to_end,efficiency,metric,part,score,score_low,score_high,resolved,floor\n";
+      "speed_up_high,end_to_end,efficiency,metric,part,score,score_low,score_high,resolved,floor,unit\n";
   for (const ResultRow& row : results.rows) {
     std::string head = fmt::format("{},{},{},{},{},{}", csv_cell(row.id), csv_cell(row.scene), csv_cell(row.gaze),
                                    to_string(row.role), csv_cell(row.of), csv_cell(row.label));
@@ -64,13 +64,14 @@ std::string results_csv(const Results& results) {
                         row.task, csv_interval(row.time_s), csv_interval(row.speed_up), csv_number(row.end_to_end),
                         csv_number(row.efficiency));
     if (row.scores.empty()) {
-      text += head + ",,,,,,,\n";
+      text += head + ",,,,,,,,\n";
     }
     const ResultReference* const reference = find_reference(results, row);
     for (const auto& [metric, parts] : row.scores) {
       for (const auto& [part, score] : parts) {
-        text += fmt::format("{},{},{},{},{},{}\n", head, csv_cell(metric), csv_cell(part), csv_interval(score.value),
-                            score.is_resolved ? 1 : 0, csv_number(find_floor(reference, row.gaze, metric, part)));
+        text += fmt::format("{},{},{},{},{},{},{}\n", head, csv_cell(metric), csv_cell(part), csv_interval(score.value),
+                            score.is_resolved ? 1 : 0, csv_number(find_floor(reference, row.gaze, metric, part)),
+                            csv_cell(unit_of(results, metric)));
       }
     }
   }

@@ -26,6 +26,12 @@ const ResultRow* find_row(const std::vector<ResultRow>& rows, const std::string&
   return row == rows.end() ? nullptr : &*row;
 }
 
+std::string unit_of(const Results& results, const std::string& metric) {
+  const auto found = std::find_if(results.metrics.begin(), results.metrics.end(),
+                                  [&](const ResultMetric& one) { return one.name == metric; });
+  return found == results.metrics.end() ? std::string() : found->unit;
+}
+
 const ResultScore* find_score(const ResultRow& row, const std::string& metric, const std::string& part) {
   const auto parts = row.scores.find(metric);
   if (parts == row.scores.end()) {

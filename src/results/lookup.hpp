@@ -12,6 +12,7 @@ namespace gazetrace {
 
 // Empty where there is none.
 const ResultRow* find_row(const std::vector<ResultRow>& rows, const std::string& id);
+std::string unit_of(const Results& results, const std::string& metric);
 const ResultScore* find_score(const ResultRow& row, const std::string& metric, const std::string& part);
 std::vector<const ResultRow*> test_rows(const Results& results);
 

@@ -35,6 +35,11 @@ std::string number_text(const std::optional<double>& value) {
   return value ? fmt::format("{:.4g}", *value) : std::string("-");
 }
 
+std::string with_unit(const Results& results, const std::string& metric) {
+  const std::string unit = unit_of(results, metric);
+  return metric + (unit.empty() ? "" : " [" + unit + "]");
+}
+
 std::string score_text(const ResultRow& row, const std::string& metric) {
   const ResultScore* const score = find_score(row, metric, "whole");
   return score == nullptr ? "-" : with_spread(score->value) + (score->is_resolved ? "" : " unresolved");
@@ -124,8 +129,9 @@ std::string fixed_quality_text(const Results& results) {
   for (const ResultFixedQuality& one : results.fixed_quality) {
     const FixedQuality& r = one.result;
     text += fmt::format(
-        "  {}/{}{} {} {:g}: {}{}{}\n", one.scene, one.gaze, one.curve.empty() ? "" : ", " + one.curve + ",", one.metric,
-        one.at, r.speed_up ? fmt::format("{}{}{:.3g}", r.bound, r.bound.empty() ? "" : " ", *r.speed_up) : "-",
+        "  {}/{}{} {} {:g}: {}{}{}\n", one.scene, one.gaze, one.curve.empty() ? "" : ", " + one.curve + ",",
+        with_unit(results, one.metric), one.at,
+        r.speed_up ? fmt::format("{}{}{:.3g}", r.bound, r.bound.empty() ? "" : " ", *r.speed_up) : "-",
         r.why.empty() ? "" : " (" + r.why + ")",
         one.model_gain ? fmt::format("; by the model of eccentricity alone {:.3g}", *one.model_gain) : std::string());
   }
@@ -136,7 +142,7 @@ std::string controls_text(const Results& results) {
   std::string text;
   for (const ResultControl& control : results.controls) {
     text += fmt::format("  {}/{} {} {}, gaze {}: {}, with the right one {}: {}{}\n", control.scene, control.gaze,
-                        control.of, control.metric, control.wrong, number_text(control.wrong_score),
+                        control.of, with_unit(results, control.metric), control.wrong, number_text(control.wrong_score),
                         number_text(control.right_score), control.is_sensitive ? "sensitive" : "not sensitive",
                         control.why.empty() ? "" : " (" + control.why + ")");
   }
@@ -148,7 +154,7 @@ std::string controls_text(const Results& results) {
 std::string results_table(const Results& results) {
   std::vector<std::string> header{"id", "role", "setting", "s a frame", "spp", "speed-up", "end-to-end", "efficiency"};
   for (const ResultMetric& metric : results.metrics) {
-    header.push_back(metric.name);
+    header.push_back(with_unit(results, metric.name));
   }
   std::string text = results.title + "\n" + times_text(results);
   for (const SceneGaze& both : scene_gazes(results)) {

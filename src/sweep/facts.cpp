@@ -30,10 +30,6 @@ ResultViewing viewing_of(const SweepPlan& plan) {
   return viewing;
 }
 
-std::string unit_of(const std::string& metric) {
-  return metric == "psnr" ? "dB" : metric == "fovvideovdp" ? "JOD" : "";
-}
-
 // In the order of the plan, which is that of all tables.
 std::vector<ResultMetric> metrics_of(const SweepPlan& plan) {
   const std::vector<MetricInfo> known = comparison_metrics();
@@ -41,7 +37,7 @@ std::vector<ResultMetric> metrics_of(const SweepPlan& plan) {
   for (const std::string& name : plan.measure.comparison.metrics) {
     const auto info = std::find_if(known.begin(), known.end(), [&](const MetricInfo& one) { return one.name == name; });
     if (info != known.end()) {
-      metrics.push_back({name, unit_of(name), info->description, info->better == MetricDirection::lower});
+      metrics.push_back({name, metric_unit(name), info->description, info->better == MetricDirection::lower});
     }
   }
   return metrics;

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""FLIP and FovVideoVDP beside their authors' programs (Python packages flip-evaluator and pyfvvdp, with a PyTorch for the CPU).
+"""FLIP and FovVideoVDP beside their authors' programs (Python packages flip-evaluator and pyfvvdp, with a PyTorch for the
+CPU), and FLIP beside OpenImageIO's own (package openimageio, 3.2 and newer; columns with "oiio").
 
     metrics_against_authors.py GAZETRACE [--pairs N] [--hdr-pairs N] [--clips N] [--time]
 
 Makes pairs of pictures, scores each with `gazetrace compare` and with those of the two programs that can be imported,
 and prints the worst differences by what was done to them: LDR-FLIP and FovVideoVDP of display pictures with gaze in the
-middle, HDR-FLIP of light over ten stops (needs the OpenEXR package), FovVideoVDP of clips of 14 frames with a gaze that
+middle, HDR-FLIP of light over ten stops, each second pair with 60 % of its
+reference black (needs the OpenEXR package), FovVideoVDP of clips of 14 frames with a gaze that
 moves or jumps from frame to frame. --time scores one 3840 x 2160 pair as well and prints seconds
 of three rounds, with reading and the start of the program on our side and not on theirs. Needs numpy.
 """
@@ -28,6 +30,11 @@ try:
     import flip_evaluator
 except ImportError:
     flip_evaluator = None
+try:
+    import OpenImageIO
+    from OpenImageIO import ImageBufAlgo
+except ImportError:
+    OpenImageIO = None
 try:
     import OpenEXR
 except ImportError:
@@ -124,6 +131,26 @@ def their_flip(reference, test, ppd):
     return float(mean), time.perf_counter() - start
 
 
+def in_open_image_io(light):
+    picture = OpenImageIO.ImageBuf(OpenImageIO.ImageSpec(light.shape[1], light.shape[0], 3, "float"))
+    picture.set_pixels(OpenImageIO.ROI(), np.ascontiguousarray(light, dtype=np.float32))
+    return picture
+
+
+def light_of_code(codes):
+    value = codes.astype(np.float64) / 255
+    return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+
+
+def oiio_flip(reference, test, ppd, hdr):
+    """Its HDR-FLIP is told the largest luminance and the median, of which the authors' program takes none below 2^-23."""
+    luminance = np.sort((reference @ (0.2126, 0.7152, 0.0722)).ravel())
+    errors = ImageBufAlgo.FLIP_diff(in_open_image_io(reference), in_open_image_io(test), hdr=int(hdr), ppd=ppd,
+                                    maxluminance=float(luminance[-1]),
+                                    medianluminance=float(max(luminance[luminance.size // 2], np.finfo(np.float32).eps)))
+    return float(errors.get_pixels("float")[..., 0].mean(dtype=np.float64))
+
+
 def their_jod(reference, test):
     height, width = reference.shape[:2]
     geometry = pyfvvdp.fvvdp_display_geometry((width, height), distance_m=DISTANCE_CM / 100, fov_horizontal=FOV_DEG)
@@ -134,7 +161,7 @@ def their_jod(reference, test):
     return float(jod), time.perf_counter() - start
 
 
-def write_hdr_pair(folder, random, width, height, kind):
+def write_hdr_pair(folder, random, width, height, kind, mostly_black):
     """Light over ten stops, as floats: display codes to a power, and a lamp."""
     reference = scene(random, width, height)
     y, x = np.mgrid[0:height, 0:width]
@@ -142,6 +169,8 @@ def write_hdr_pair(folder, random, width, height, kind):
     scale = random.uniform(0.3, 3)
     light = [np.ascontiguousarray(np.clip(picture, 0, 1) ** 2.2 * scale + 30 * lamp[..., None], dtype=np.float32)
              for picture in (reference, spoiled(random, reference, kind))]
+    if mostly_black:
+        light[0][: height * 6 // 10] = 0
     for name, picture in zip(("ref", "test"), light):
         header = {"compression": OpenEXR.NO_COMPRESSION, "type": OpenEXR.scanlineimage}
         with OpenEXR.File(header, {"RGB": picture}) as file:
@@ -219,9 +248,9 @@ def their_clip_jod(reference, test, gaze):
 
 def table(title, worst):
     metrics = sorted({metric for _, metric in worst})
-    print(f"{title:<24}" + "".join(f"{metric:>14}" for metric in metrics))
+    print(f"{title:<24}" + "".join(f"{metric:>16}" for metric in metrics))
     for row in (*KINDS, "all"):
-        print(f"{row:<24}" + "".join(f"{worst.get((row, metric), math.nan):>14.2g}" for metric in metrics))
+        print(f"{row:<24}" + "".join(f"{worst.get((row, metric), math.nan):>16.2g}" for metric in metrics))
 
 
 def keep(worst, kind, metric, difference):
@@ -238,6 +267,8 @@ def stills(program, folder, random, count):
         if flip_evaluator is not None:
             value, _, ppd = ours(program, folder, width, height, "flip")
             keep(worst, kind, "flip", abs(value - their_flip(*pictures, ppd)[0]))
+            if OpenImageIO is not None:
+                keep(worst, kind, "flip, oiio", abs(value - oiio_flip(*map(light_of_code, pictures), ppd, False)))
         if pyfvvdp is not None:
             value, _, _ = ours(program, folder, width, height, "fovvideovdp")
             keep(worst, kind, "fovvideovdp", abs(value - their_jod(*pictures)[0]))
@@ -248,9 +279,11 @@ def hdr_pairs(program, folder, random, count):
     worst = {}
     for pair in range(count):
         width, height = SIZES[pair % 4]
-        light = write_hdr_pair(folder, random, width, height, pair % 5)
+        light = write_hdr_pair(folder, random, width, height, pair % 5, pair % 2 == 1)
         value, ppd = our_hdr_flip(program, folder, width, height)
         keep(worst, pair % 5, "hdr_flip", abs(value - their_hdr_flip(*light, ppd)))
+        if OpenImageIO is not None:
+            keep(worst, pair % 5, "hdr_flip, oiio", abs(value - oiio_flip(*light, ppd, True)))
     return worst
 
 

@@ -272,7 +272,7 @@ class BadOptions(harness.CliTest):
             ("--bounces", "-1", ["--bounces"]), ("--threads", "-1", ["--threads"]), ("--seed", "-1", ["--seed"]),
             ("--exposure", "bright", ["--exposure"]), ("--yfov", "180", ["--yfov"]), ("--env", "constant:1,2", ["--env"]),
             ("--env", "constant:-1,0,0", ["negative"]), ("--only-pixel", "64,0", ["--only-pixel", "64x36"]),
-            ("--progress", "sometimes", ["auto"]), ("--bits", "12", ["12"]), ("--exr-zip-level", "0", ["--exr-zip-level"]),
+            ("--progress", "sometimes", ["auto"]), ("--bits", "12", ["12"]), ("--exr-space", "sRGB", ["Rec.709", "ACEScg"]), ("--crop", "0,0,0,5", ["positive"]),
             ("--gaze-scale", "0", ["--gaze-scale"]), ("--threads", "66000", ["--threads", "1024"]),
             ("--env-ev", "500", ["--env-ev", "500"]), ("--exposure", "auto+1e9", ["--exposure"]),
         ]:

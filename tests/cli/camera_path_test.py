@@ -34,7 +34,7 @@ class CameraPaths(harness.CliTest):
             order = flags if "--camera-rotation-order" in flags else []
             self.run_ok("plan", "--size", "64x36", "--camera-path", "path.tum", "--fps", "24000/1001", "--yfov", "40",
                         "--save-camera", name, *order)
-            again = self.cameras("--camera-path", name, "--fps", "24000/1001", "--frames", "1-48", *flags)
+            again = self.cameras("--camera-path", name, "--fps", "24000/1001", *flags)
             self.assert_same_cameras(first, again)
             self.assertAlmostEqual(again[0]["yfov_deg"], 40, places=12)
         self.assert_refused(["plan", "--size", "64x36", "--camera-path", "path.tum", "--save-camera", "x.fbx"],
@@ -50,6 +50,40 @@ class CameraPaths(harness.CliTest):
         for frames, arguments in ((4, ["moving.gltf", *eye]), (1, ["camera.gltf", *eye]), (1, ["box.gltf", *eye]), (1, eye),
                                   (2, ["moving.gltf", *eye, "--gaze", "log.csv"]), (3, ["moving.gltf", *eye, "--frames", "1-3"])):
             self.assertEqual(len(self.frames(*arguments)), frames, arguments)
+
+    def test_each_pose_is_a_frame(self):
+        self.write("ten.chan", "".join(f"{1001 + i} {i} 0 0 0 0 0\n" for i in range(10)))
+        for rate in ("24", "24000/1001", "25", "30000/1001", "59.94", "60", "90", "7"):
+            for arguments, first in (([], 1), (["--first-frame", "1001"], 1001), (["--first-frame", "1001", "--camera-keep-time"], 1001),
+                                     (["--camera-keep-time"], 1001)):
+                frames = self.frames("--camera-path", "ten.chan", "--fps", rate, *arguments)
+                self.assertEqual([frame["frame"] for frame in frames], list(range(first, first + 10)), (rate, arguments))
+                for i, frame in enumerate(frames):
+                    self.assertAlmostEqual(frame["camera"]["position_m"][0], i, 7)
+        # At another rate the middle of the first frame lies before the first pose.
+        self.assertEqual([frame["frame"] for frame in self.frames("--camera-path", "ten.chan", "--fps", "60", "--camera-fps", "24")], list(range(2, 25)))
+
+    def test_frames_may_be_counted_from_1001(self):
+        self.write("path.tum", PATH)
+        arguments = ["box.gltf", "--camera-path", "path.tum", "--fps", "4"]
+        plain, numbered = (self.frames(*arguments, *more) for more in ([], ["--first-frame", "1001"]))
+        self.assertEqual([frame["frame"] for frame in numbered], [frame["frame"] + 1000 for frame in plain])
+        self.assertEqual([{**frame, "frame": 0} for frame in numbered], [{**frame, "frame": 0} for frame in plain])
+        self.run_ok("render", *arguments, "--first-frame", "1001", "--frames", "1002-1003", "--size", "16x9", "--spp", "1", "-o", "f.####.exr", "--quiet")
+        self.assertEqual(sorted(path.name for path in self.folder.glob("f.*.exr")), ["f.1002.exr", "f.1003.exr"])
+        self.assert_refused(["plan", *arguments, "--first-frame", "1001", "--frames", "1-3"], ["--frames", "numbered from 1001"])
+
+    def test_a_wide_camera_is_not_cropped(self):
+        scene = harness.box_gltf()
+        scene["cameras"] = [{"type": "orthographic", "orthographic": {"xmag": 2.5, "ymag": 1, "znear": 0.01, "zfar": 100}},
+                            {"type": "perspective", "perspective": {"yfov": 1.5707963267948966, "aspectRatio": 4, "znear": 0.01}}]
+        scene["nodes"] += [{"camera": 1}]
+        scene["scenes"][0]["nodes"] += [4]
+        self.write("wide.gltf", json.dumps(scene))
+        self.assertAlmostEqual(self.cameras("wide.gltf", "--camera", "0")[0]["ymag_m"], 1.40625)
+        self.assertAlmostEqual(self.cameras("wide.gltf", "--camera", "1")[0]["yfov_deg"], math.degrees(2 * math.atan(4 / (16 / 9))))
+        self.assertAlmostEqual(self.cameras("wide.gltf", "--camera", "1", "--yfov", "40")[0]["yfov_deg"], 40)
+        self.assertIn("width of 2.5 heights", self.run_ok("plan", "wide.gltf", "--size", "64x36").stderr)
 
     def test_the_help_says_how_a_saved_path_is_read_again(self):
         text = " ".join(self.run_ok("plan", "--help").stdout.split())

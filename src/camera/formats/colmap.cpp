@@ -43,6 +43,21 @@ bool split_picture(std::string_view line, std::array<std::string_view, 9>& cells
   return !name.empty();
 }
 
+// Some tools leave out the empty lines of pictures without points. Then each second picture would be taken for points.
+void check_points(std::string_view line, const std::string& place) {
+  std::vector<std::string_view> cells;
+  if (trim(line).empty()) {
+    return;
+  }
+  split_cells(trim(line), ' ', cells);
+  const bool numbers = std::all_of(cells.begin(), cells.end(),
+                                   [](std::string_view cell) { return number_from(trim(cell)).has_value(); });
+  if (!numbers || cells.size() % 3 != 0) {
+    throw Error(ErrorKind::input, place, "where the points of a picture belong, there are no triples X Y POINT3D_ID",
+                "a picture without points has an empty line here; put it back after each picture");
+  }
+}
+
 std::vector<Picture> read_pictures(const CameraFile& file) {
   std::vector<Picture> pictures;
   LineReader lines(file.text);
@@ -66,7 +81,9 @@ std::vector<Picture> read_pictures(const CameraFile& file) {
     const Quatd to_world{-v[1], -v[2], -v[3], v[0]};
     picture.key.pose = {-rotate(normalize(to_world), Vec3d{v[4], v[5], v[6]}), to_world};
     pictures.push_back(std::move(picture));
-    lines.next(line);  // its points
+    if (lines.next(line)) {
+      check_points(line, fmt::format("{}:{}", file.path, lines.number()));
+    }
   }
   std::sort(pictures.begin(), pictures.end(),
             [](const Picture& a, const Picture& b) { return natural_less(a.name, b.name); });

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// NeRF's transforms.json (instant-ngp, nerfstudio, the synthetic sets): camera-to-world matrices; the camera looks
-// along -z with y up. There are no times: pictures become frames in the order of their names. The vertical field of
-// view comes from fl_y and h, else from camera_angle_y, else from fl_x or camera_angle_x with w and h.
+// What NeRF programs write, as JSON without times: each pose becomes a frame.
+// - transforms.json (instant-ngp, nerfstudio, the synthetic sets) has camera-to-world matrices; the camera looks along
+// -z
+//   with y up. Pictures become frames in the order of their names. The vertical field of view comes from fl_y and h,
+//   else from camera_angle_y, else from fl_x or camera_angle_x with w and h.
+// - camera paths of nerfstudio have such matrices as 16 numbers by rows, and the vertical field of view in degrees.
+// - camera paths of instant-ngp (base_cam.json) have quaternions x, y, z, w in its own world, the unit cube.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +22,8 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::string_view kForm =
-    "give {\"frames\": [{\"file_path\": ..., \"transform_matrix\": [[4 numbers], [4], [4], [0, 0, 0, 1]]}, ...]}";
+    "give {\"frames\": [{\"file_path\": ..., \"transform_matrix\": [[4 numbers], [4], [4], [0, 0, 0, 1]]}, ...]}, a "
+    "camera path of nerfstudio or one of instant-ngp";
 
 [[noreturn]] void refuse(const std::string& place, const std::string& problem) {
   throw Error(ErrorKind::input, place, problem, kForm);
@@ -32,34 +37,37 @@ std::optional<double> number_of(const Json& object, const char* key) {
   return found->get<double>();
 }
 
-Affine matrix_of(const Json& frame, const std::string& place) {
-  const auto found = frame.find("transform_matrix");
-  if (found == frame.end() || !found->is_array() || (found->size() != 3 && found->size() != 4)) {
-    refuse(place, "has no transform_matrix of 4 rows");
+// Rows of numbers, or all numbers one after the other.
+Affine matrix_of(const Json& frame, const char* key, const std::string& place) {
+  const auto found = frame.find(key);
+  const std::size_t size = found == frame.end() || !found->is_array() ? 0 : found->size();
+  const bool flat = size == 12 || size == 16;
+  if (size != 3 && size != 4 && !flat) {
+    refuse(place, fmt::format("has no {} of 4 rows", key));
   }
   std::array<std::array<double, 4>, 4> m{};
   m[3] = {0, 0, 0, 1};
-  for (std::size_t r = 0; r < found->size(); ++r) {
-    const Json& row = (*found)[r];
-    if (!row.is_array() || row.size() != 4) {
-      refuse(place, fmt::format("row {} of its transform_matrix does not have 4 numbers", r + 1));
+  for (std::size_t r = 0; r < (flat ? size / 4 : size); ++r) {
+    if (const Json& row = (*found)[r]; !flat && (!row.is_array() || row.size() != 4)) {
+      refuse(place, fmt::format("row {} of its {} does not have 4 numbers", r + 1, key));
     }
     for (std::size_t c = 0; c < 4; ++c) {
-      if (!row[c].is_number() || !std::isfinite(row[c].get<double>())) {
-        refuse(place, fmt::format("transform_matrix has no finite number at row {}, column {}", r + 1, c + 1));
+      const Json& number = flat ? (*found)[4 * r + c] : (*found)[r][c];
+      if (!number.is_number() || !std::isfinite(number.get<double>())) {
+        refuse(place, fmt::format("{} has no finite number at row {}, column {}", key, r + 1, c + 1));
       }
-      m[r][c] = row[c].get<double>();
+      m[r][c] = number.get<double>();
     }
   }
   if (m[3] != std::array<double, 4>{0, 0, 0, 1}) {
-    refuse(place, "the last row of its transform_matrix is not 0, 0, 0, 1");
+    refuse(place, fmt::format("the last row of its {} is not 0, 0, 0, 1", key));
   }
   const auto column = [&](std::size_t c) { return Vec3d{m[0][c], m[1][c], m[2][c]}; };
   return {column(0), column(1), column(2), column(3)};
 }
 
 // Text files round to a few digits; a larger deviation is a scale, a shear or a mirror image.
-void check_rotation(const Affine& a, const std::string& place) {
+void check_rotation(const Affine& a, const char* key, const std::string& place) {
   constexpr double kOff = 1e-2;
   const bool unit =
       std::abs(length(a.x) - 1) < kOff && std::abs(length(a.y) - 1) < kOff && std::abs(length(a.z) - 1) < kOff;
@@ -67,9 +75,50 @@ void check_rotation(const Affine& a, const std::string& place) {
       std::abs(dot(a.x, a.y)) < kOff && std::abs(dot(a.y, a.z)) < kOff && std::abs(dot(a.z, a.x)) < kOff;
   if (!unit || !square || determinant(a) < 0) {
     throw Error(ErrorKind::input, place,
-                unit && square ? "its transform_matrix is a mirror image, not a rotation"
-                               : "the columns of its transform_matrix are not a rotation",
+                unit && square ? fmt::format("its {} is a mirror image, not a rotation", key)
+                               : fmt::format("the columns of its {} are not a rotation", key),
                 "export camera-to-world matrices without scale; `camera-scale` scales a path");
+  }
+}
+
+constexpr double kNgpScale = 0.33;
+constexpr double kNgpOffset = 0.5;
+
+// instant-ngp's camera looks along +z with y down, in a world whose x, y, z are the y, z, x of transforms.json.
+CameraPose out_of_unit_cube(const Json& frame, const std::string& place) {
+  std::array<double, 7> v{};
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const char* const key = i < 4 ? "R" : "T";
+    const std::size_t at = i < 4 ? i : i - 4;
+    const auto found = frame.find(key);
+    if (found == frame.end() || !found->is_array() || found->size() != (i < 4 ? 4U : 3U) || !(*found)[at].is_number()) {
+      refuse(place, fmt::format("has no {} of {} numbers", key, i < 4 ? 4 : 3));
+    }
+    v[i] = (*found)[at].get<double>();
+  }
+  const Quatd turned{v[0], v[1], v[2], v[3]};
+  const double norm = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3]);
+  if (!(norm > 1e-6) || !std::isfinite(norm) || !std::isfinite(v[4] + v[5] + v[6])) {
+    refuse(place, "its R or T is not finite, or R has no direction");
+  }
+  constexpr Quatd kCycle{0.5, 0.5, 0.5, 0.5};  // turns x to y, y to z and z to x
+  const auto moved = [](double x) { return (x - kNgpOffset) / kNgpScale; };
+  return {{moved(v[6]), moved(v[4]), moved(v[5])}, kCycle * normalize(turned) * Quatd{1, 0, 0, 0}};
+}
+
+// nerfstudio's own rendering shows all poses within the stated seconds.
+void warn_about_rate(const Json& json, std::size_t poses, const FrameRate& fps, const std::string& path,
+                     Warnings& warnings) {
+  const auto seconds = number_of(json, "seconds");
+  const double used = static_cast<double>(fps.numerator) / static_cast<double>(fps.denominator);
+  if (!seconds || !(*seconds > 0)) {
+    return;
+  }
+  if (const double stated = static_cast<double>(poses) / *seconds; std::abs(stated / used - 1) > 0.01) {
+    warnings.push_back(
+        fmt::format("{}: has {} poses for {:g} s, and each is a frame at {:g} a second; `camera-fps` {:g} "
+                    "keeps its time",
+                    path, poses, *seconds, used, stated));
   }
 }
 
@@ -107,9 +156,13 @@ void warn_about_lens(const Json& json, const std::string& path, CameraKeys& resu
   constexpr std::array<const char*, 6> kDistortions{"k1", "k2", "k3", "k4", "p1", "p2"};
   const bool bent = std::any_of(kDistortions.begin(), kDistortions.end(),
                                 [&](const char* key) { return number_of(json, key).value_or(0) != 0; });
-  const auto model = json.find("camera_model");
+  const auto states = [&](const char* key, const char* part) {
+    const auto model = json.find(key);
+    return model != json.end() && model->is_string() && model->get<std::string>().find(part) != std::string::npos;
+  };
   const bool fisheye =
-      model != json.end() && model->is_string() && model->get<std::string>().find("FISHEYE") != std::string::npos;
+      states("camera_model", "FISHEYE") ||
+      (json.contains("camera_type") && !states("camera_type", "persp") && !states("camera_type", "Persp"));
   if (off_center || bent || fisheye) {
     result.warnings.push_back(path + ": the lens is distorted or off its centre; a straight, centred one is rendered");
   }
@@ -124,7 +177,10 @@ void warn_about_lens(const Json& json, const std::string& path, CameraKeys& resu
 
 double sniff_camera_nerf(const CameraFile& file) {
   const bool object = trim(std::string_view(file.text).substr(0, 4096)).starts_with('{');
-  return object && file.text.find("\"transform_matrix\"") != std::string::npos ? 0.95 : 0.0;
+  const auto holds = [&](const char* key) { return file.text.find(key) != std::string::npos; };
+  const bool known = holds("\"transform_matrix\"") || (holds("\"camera_path\"") && holds("\"camera_to_world\"")) ||
+                     (holds("\"path\"") && holds("\"R\"") && holds("\"T\""));
+  return object && known ? 0.95 : 0.0;
 }
 
 CameraKeys read_camera_nerf(const CameraFile& file, const CameraReadOptions& options) {
@@ -132,10 +188,18 @@ CameraKeys read_camera_nerf(const CameraFile& file, const CameraReadOptions& opt
   if (json.is_discarded() || !json.is_object()) {
     refuse(file.path, "is not a JSON object");
   }
-  const auto frames = json.find("frames");
-  if (frames == json.end() || !frames->is_array()) {
+  const auto list_of = [&](const char* key) {
+    const auto found = json.find(key);
+    return found != json.end() && found->is_array() ? &*found : nullptr;
+  };
+  const Json* const shown = list_of("camera_path");
+  const Json* const steered = shown != nullptr ? nullptr : list_of("path");
+  const Json* const frames = shown != nullptr ? shown : steered != nullptr ? steered : list_of("frames");
+  if (frames == nullptr) {
     refuse(file.path, "has no list of frames");
   }
+  const std::string list = shown != nullptr ? "camera_path" : steered != nullptr ? "path" : "frames";
+  const char* const key = shown != nullptr ? "camera_to_world" : "transform_matrix";
   CameraKeys result;
   result.counts_frames = true;
   struct Picture {
@@ -146,20 +210,24 @@ CameraKeys read_camera_nerf(const CameraFile& file, const CameraReadOptions& opt
   std::vector<double> yfovs_rad;
   for (const Json& frame : *frames) {
     const auto index = static_cast<std::int64_t>(pictures.size());
-    const std::string place = fmt::format("{}: frames[{}]", file.path, index);
+    const std::string place = fmt::format("{}: {}[{}]", file.path, list, index);
     if (!frame.is_object()) {
       refuse(place, "is not a JSON object");
     }
-    const Affine matrix = matrix_of(frame, place);
-    check_rotation(matrix, place);
     const auto name = frame.find("file_path");
     Picture picture;
     picture.name = name != frame.end() && name->is_string() ? name->get<std::string>() : "";
     picture.key.row = index + 1;
-    picture.key.pose = {matrix.t, rotation_of(matrix)};
+    if (steered != nullptr) {
+      picture.key.pose = out_of_unit_cube(frame, place);
+    } else {
+      const Affine matrix = matrix_of(frame, key, place);
+      check_rotation(matrix, key, place);
+      picture.key.pose = {matrix.t, rotation_of(matrix)};
+    }
     pictures.push_back(std::move(picture));
-    if (const auto own = field_of_view(frame)) {
-      yfovs_rad.push_back(*own);
+    if (const auto own = list == "frames" ? field_of_view(frame) : number_of(frame, "fov")) {
+      yfovs_rad.push_back(list == "frames" ? *own : *own * kRadPerDeg);
     }
   }
   const bool named = std::none_of(pictures.begin(), pictures.end(), [](const Picture& p) { return p.name.empty(); });
@@ -178,6 +246,15 @@ CameraKeys read_camera_nerf(const CameraFile& file, const CameraReadOptions& opt
   }
   result.yfov_rad = one_field_of_view(yfovs_rad, file.path, result.warnings);
   warn_about_lens(json, file.path, result);
+  if (steered != nullptr) {
+    result.warnings.push_back(fmt::format(
+        "{}: is taken out of instant-ngp's unit cube to the world of its transforms.json by the usual scale of {} and "
+        "offset of {}; `camera-scale` and `camera-start` correct it where that file states others",
+        file.path, kNgpScale, kNgpOffset));
+  }
+  if (shown != nullptr) {
+    warn_about_rate(json, pictures.size(), options.fps, file.path, result.warnings);
+  }
   return result;
 }
 

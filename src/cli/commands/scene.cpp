@@ -86,6 +86,7 @@ std::string camera_text(const SceneCamera& camera) {
   std::string text = projection.kind == ProjectionKind::perspective
                          ? fmt::format("perspective, {:.2f} degrees high", projection.yfov_rad * kDegPerRad)
                          : fmt::format("orthographic, {} m high", 2 * projection.ymag_m);
+  text += projection.aspect > 0 ? fmt::format(", {:.4g} times as wide", projection.aspect) : "";
   if (camera.path.is_static) {
     return text + ", still";
   }

@@ -27,6 +27,9 @@ Json json_number(const std::optional<double>& value) {
 Json json_scores(const Scores& scores) {
   Json json{
       {"metric", scores.metric}, {"value", json_number(scores.value)}, {"weighted", json_number(scores.weighted)}};
+  if (const std::string unit = metric_unit(scores.metric); !unit.empty()) {
+    json["unit"] = unit;
+  }
   for (std::size_t b = 0; b < scores.bands.size(); ++b) {
     json["bands"][eccentricity_band_name(b)] = json_number(scores.bands[b]);
   }
@@ -58,7 +61,7 @@ std::string compare_csv_header() {
   for (const char* region : kRetinalRegionNames) {
     text += fmt::format(",region_{}", region);
   }
-  return text + "\n";
+  return text + ",unit\n";
 }
 
 std::string compare_csv_rows(const FrameScores& frame) {
@@ -80,7 +83,7 @@ std::string compare_csv_rows(const FrameScores& frame) {
     for (const auto& region : scores.regions) {
       text += "," + number(region);
     }
-    text += "\n";
+    text += "," + metric_unit(scores.metric) + "\n";
   }
   return text;
 }
@@ -101,7 +104,7 @@ std::string compare_text(const ComparedSequences& compared) {
       continue;  // one class: the same numbers again
     }
     text +=
-        fmt::format("\n{} ({} of {} frames){}\n{:<12}{:>12}{:>12}{:>12}{:>12}{:>12}{:>8}",
+        fmt::format("\n{} ({} of {} frames){}\n{:<23}{:>12}{:>12}{:>12}{:>12}{:>12}{:>8}",
                     part.gaze_class == "all" ? "all frames" : part.gaze_class, part.frames, summary.front().frames,
                     &part == &claim ? ": headline" : "", "metric", "value", "weighted", "p05", "p50", "p95", "worst");
     for (const char* region : kRetinalRegionNames) {
@@ -119,7 +122,9 @@ std::string compare_text(const ComparedSequences& compared) {
       const auto quantile = [&](std::size_t i) {
         return shown(std::isnan(part.quantiles[m][i]) ? std::nullopt : std::optional(part.quantiles[m][i]));
       };
-      text += fmt::format("{:<12}{:>12}{:>12}{:>12}{:>12}{:>12}{:>8}", scores.metric, shown(scores.value),
+      const std::string unit = metric_unit(scores.metric);
+      text += fmt::format("{:<23}{:>12}{:>12}{:>12}{:>12}{:>12}{:>8}",
+                          scores.metric + (unit.empty() ? "" : " [" + unit + "]"), shown(scores.value),
                           shown(scores.weighted), quantile(0), quantile(1), quantile(2),
                           part.worst_frame[m] ? std::to_string(*part.worst_frame[m]) : "-");
       for (const auto& region : scores.regions) {

@@ -55,6 +55,12 @@ JobIdleRule without_aov(const std::string& name) {
           }};
 }
 
+JobIdleRule without_coverage() {
+  const JobIdleRule mattes = without_aov("crypto_");
+  return {"without `alpha`, and " + mattes.words,
+          [holds = mattes.holds](const JobSettings& job) { return !job.exr.alpha && holds(job); }};
+}
+
 JobIdleRule without_automatic_exposure() {
   return {"without `exposure` auto",
           [](const JobSettings& job) { return job.exposure.mode != ExposureMode::log_average; }};

@@ -24,6 +24,7 @@ JobIdleRule without_regions();
 JobIdleRule without_window();
 // No AOV whose name begins so is asked for.
 JobIdleRule without_aov(const std::string& name);
+JobIdleRule without_coverage();  // which mattes and alpha show
 JobIdleRule without_automatic_exposure();
 JobIdleRule with_lights_sampled_alone();
 JobIdleRule with_other_sampling(const std::string& name);

@@ -12,14 +12,18 @@ void add_exr_options(JobSchema& schema) {
              "Type of the colour channels")
       .with(Trait::one_run);
   schema
+      .value("--exr-space", exr(&ExrSettings::space), choices<ExrSpace>(), Touch::output,
+             "Linear colours of the .exr: converted when they are written, with their chromaticities in the header")
+      .with(Trait::one_run);
+  schema
       .value("--exr-compression", exr(&ExrSettings::compression), "NAME", Touch::output,
              "none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab")
       .with(Trait::one_run);
   schema
-      .value("--exr-zip-level", exr(&ExrSettings::zip_level), "1..9", Touch::output,
-             "Level of the compressions zip and zips, from 1 (fast) to 9 (small files); every level is lossless")
-      .decides_nothing()
-      .within(1, 9)
+      .flag(
+          "--alpha", exr(&ExrSettings::alpha), Touch::output,
+          "Writes how much of each pixel surfaces cover, and leaves the environment out of the picture, which it still "
+          "lights: premultiplied in .exr, straight in .png and .tif")
       .with(Trait::one_run);
   schema
       .value("--aov", exr(&ExrSettings::aovs), "NAME,NAME", Touch::output,
@@ -43,10 +47,11 @@ void add_exr_options(JobSchema& schema) {
       .idle_when({without_aov("crypto_")});
   schema
       .value("--crypto-samples", exr(&ExrSettings::crypto_rays), "N", Touch::output,
-             "First hits in each pixel that Cryptomatte's coverage is counted from, the same in all pixels")
+             "First hits in each pixel that the coverage of Cryptomatte and `alpha` is counted from, the same in all "
+             "pixels")
       .within(1, 1024)
       .with(Trait::one_run)
-      .idle_when({without_aov("crypto_")});
+      .idle_when({without_coverage()});
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ namespace gazetrace {
 namespace {
 
 constexpr double kFarthestMiddle_m = 1e6;  // beyond it, rays have no precision
+constexpr double kMostAspect = 1e4;        // beyond it, the height of the view leaves no precision for directions
 
 Projection projection_of(const GltfDocument& document, int camera_index) {
   const GltfCamera& from = document.cameras[static_cast<std::size_t>(camera_index)];
@@ -26,12 +27,18 @@ Projection projection_of(const GltfDocument& document, int camera_index) {
       throw Error(ErrorKind::input, place, "yfov " + std::to_string(from.yfov_rad) + " is not between 0 and pi");
     }
     projection.yfov_rad = from.yfov_rad;
+    projection.aspect = from.aspect;
   } else {
     projection.kind = ProjectionKind::orthographic;
     projection.ymag_m = std::abs(from.ymag);
     if (!(projection.ymag_m > 0)) {
       throw Error(ErrorKind::input, place, "ymag must not be zero");
     }
+    projection.aspect = std::abs(from.xmag) / projection.ymag_m;
+  }
+  if (!(projection.aspect >= 0 && projection.aspect <= kMostAspect)) {
+    throw Error(ErrorKind::input, place, "a width of " + std::to_string(projection.aspect) + " heights is no view",
+                "correct aspectRatio, or xmag and ymag");
   }
   projection.middle_m = from.middle_m;
   if (!(std::hypot(projection.middle_m.x, projection.middle_m.y) <= kFarthestMiddle_m)) {

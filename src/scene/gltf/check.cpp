@@ -281,6 +281,7 @@ void check_cameras_and_animations(Walker& walker, const Json& root) {
     }
     const Step step(walker, type);
     walker.number(*lens, type == "perspective" ? "yfov" : "ymag", true);
+    walker.number(*lens, type == "perspective" ? "aspectRatio" : "xmag");
     walker.number(*lens, "znear", true);
     walker.number(*lens, "zfar", type == "orthographic");
   });

@@ -201,6 +201,8 @@ GltfCamera camera(const tinygltf::Camera& from) {
   to.name = from.name;
   to.perspective = from.type == "perspective";
   to.yfov_rad = from.perspective.yfov;
+  to.aspect = from.perspective.aspectRatio;
+  to.xmag = from.orthographic.xmag;
   to.ymag = from.orthographic.ymag;
   to.znear = to.perspective ? from.perspective.znear : from.orthographic.znear;
   to.zfar = to.perspective ? from.perspective.zfar : from.orthographic.zfar;

@@ -98,7 +98,7 @@ struct GltfTexture {
 struct GltfCamera {
   std::string name;
   bool perspective = true;
-  double yfov_rad = 0, ymag = 0, znear = 0, zfar = 0;
+  double yfov_rad = 0, aspect = 0, xmag = 0, ymag = 0, znear = 0, zfar = 0;
   Vec2d middle_m;  // extras.gazetrace.middle_m
 };
 

@@ -32,6 +32,9 @@ inline float PathKernel<kLayers>::weight_of_found_light(int vertex, float pdf_bs
 template <bool kLayers>
 inline void PathKernel<kLayers>::add_sky(int vertex, const RayBatch& rays, const PathBatch& paths,
                                          const std::uint16_t* list, std::size_t count) {
+  if (vertex == 0 && !frame_.settings.show_environment) {
+    return;
+  }
   std::array<Vec3f, kChunk> directions;
   std::array<LightSampler::EnvironmentHit, kChunk> sky;
   for (std::size_t i = 0; i < count; ++i) {

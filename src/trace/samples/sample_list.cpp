@@ -10,7 +10,8 @@ namespace gazetrace {
 SiteSequence SampleList::sequence_of_site(const Site& site, int first_x, int first_y) const {
   // Every pixel belongs to one site only, so a site's first pixel identifies it.
   return {make_sample_key(seed_, frame_,
-                          (static_cast<std::uint64_t>(first_y) << 32U) | static_cast<std::uint64_t>(first_x)),
+                          (static_cast<std::uint64_t>(map_->y_px + first_y) << 32U) |
+                              static_cast<std::uint64_t>(map_->x_px + first_x)),
           halves_, static_cast<std::uint8_t>((site.block_x ^ site.block_y) & 1)};
 }
 

@@ -200,6 +200,57 @@ TEST_F(CameraFormats, ColmapIsInvertedAndSortedByName) {
               HasSubstr("images.txt:3: is not the line of a picture: it has less than 10 values"));
 }
 
+// Without its empty lines, each second picture would pass for the points of the one before.
+TEST_F(CameraFormats, ColmapWithoutItsEmptyLinesIsRefused) {
+  EXPECT_THAT(refusal("images.txt", "1 1 0 0 0 1 2 3 7 a.jpg\n2 1 0 0 0 1 2 3 7 b.jpg\n"),
+              HasSubstr("images.txt:2: where the points of a picture belong"));
+  EXPECT_THAT(
+      refusal("images.txt", "1 1 0 0 0 1 2 3 7 a 1.jpg\n\n2 1 0 0 0 1 2 3 7 b 2.jpg\n3 1 0 0 0 1 2 3 7 c.jpg\n"),
+      HasSubstr("images.txt:4: where the points"));
+  EXPECT_EQ(read("images.txt", "1 1 0 0 0 1 2 3 7 a.jpg\n10 20 -1\n2 1 0 0 0 1 2 3 7 b.jpg").end_ns, 62'500'000);
+}
+
+// The poses of NerfMatricesGoFromCameraToWorld. Those of instant-ngp are made by its own steps: columns 1 and 2 change
+// sign, places are scaled by 0.33 and moved by 0.5, and rows x, y, z become rows z, x, y.
+TEST_F(CameraFormats, CameraPathsOfNerfPrograms) {
+  const std::string poses = R"("camera_path": [
+    {"camera_to_world": [1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 5, 0, 0, 0, 1], "fov": 35, "aspect": 1.7},
+    {"camera_to_world": [0, 0, 1, 2, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 0, 1], "fov": 35, "aspect": 1.7}])";
+  const CameraPath shown = read("camera_path.json", "{\"camera_type\": \"perspective\", \"fps\": 24, " + poses + "}");
+  expect_view(shown.pose_at(20'833'333), {0, 1, 5}, kForward, kUp);
+  expect_view(shown.pose_at(62'500'000), {2, 0, 0}, {-1, 0, 0}, kUp);
+  EXPECT_NEAR(shown.projection.yfov_rad * kDegPerRad, 35, 1e-12);
+  EXPECT_TRUE(shown.warnings.empty());
+  EXPECT_THAT(read("s.json", "{\"seconds\": 4, " + poses + "}").warnings.at(0), HasSubstr("`camera-fps` 0.5 keeps"));
+  EXPECT_THAT(read("w.json", "{\"camera_type\": \"equirectangular\", " + poses + "}").warnings.at(0),
+              HasSubstr("a straight, centred one is rendered"));
+  EXPECT_THAT(refusal("c.json", R"({"camera_path": [{"camera_to_world": [1, 0, 0]}]})"),
+              HasSubstr("c.json: camera_path[0]: has no camera_to_world of 4 rows"));
+
+  // (0, 1, 5) becomes (0.33 + 0.5, 1.65 + 0.5, 0.5). The matrix of an upright camera, diag(1, -1, -1) in its own world,
+  // has the rows (0, -1, 0), (0, 0, -1), (1, 0, 0): the quaternion (0.5, -0.5, 0.5, 0.5).
+  const CameraPath steered = read("base_cam.json", R"({"path": [
+    {"R": [0.5, -0.5, 0.5, 0.5], "T": [0.83, 2.15, 0.5], "fov": 50.625, "scale": 1.5, "slice": 0.0},
+    {"R": [1, -1, 1, 1], "T": [0.5, 0.5, 1.16], "fov": 50.625, "scale": 1.5, "slice": 0.0}], "time": 0.5})");
+  expect_view(steered.pose_at(20'833'333), {0, 1, 5}, kForward, kUp);
+  expect_view(steered.pose_at(62'500'000), {2, 0, 0}, kForward, kUp);
+  EXPECT_NEAR(steered.projection.yfov_rad * kDegPerRad, 50.625, 1e-12);
+  EXPECT_THAT(steered.warnings.at(0), HasSubstr("instant-ngp's unit cube"));
+  EXPECT_THAT(refusal("r.json", R"({"path": [{"R": [0, 0, 1], "T": [0, 0, 0]}]})"), HasSubstr("has no R of 4 numbers"));
+}
+
+TEST_F(CameraFormats, NamesWhatItDoesNotRead) {
+  EXPECT_THAT(refusal("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n"),
+              HasSubstr("poses.txt: is in KITTI's form"));
+  EXPECT_THAT(refusal("n.tum", "1403636580000000000.000000 0 0 0 0 0 0 1\n1403636580041666816.0 0 0 0 0 0 0 1\n"),
+              HasSubstr("look like nanoseconds, where TUM has seconds: the last is 1403636580041666816"));
+  EXPECT_THAT(refusal("u.tum", "1403636580000000 0 0 0 0 0 0 1\n"), HasSubstr("look like microseconds"));
+  EXPECT_THAT(refusal("m.tum", "1403636580000 0 0 0 0 0 0 1\n"), HasSubstr("look like milliseconds"));
+  EXPECT_THAT(refusal("z.tum", "0 0 0 0 0 0 0 1\n41666816 0 0 0 0 0 0 1\n83333376 0 0 0 0 0 0 1\n"),
+              HasSubstr("they are 41666560 or more apart"));
+  EXPECT_EQ(read("s.tum", "1403636580.5 0 0 0 0 0 0 1\n1403636581 0 0 0 0 0 0 1\n").end_ns, 500'000'000);
+}
+
 // A Unity camera at (1, 2, 3), yawed 90 degrees to the right: looks along Unity's +x, which is +x here too; z changes
 // its sign.
 TEST_F(CameraFormats, UnityIsMirroredInCsvAndTum) {

@@ -42,6 +42,19 @@ TEST(LookAt, DegenerateUpStillGivesARotation) {
   expect_near(rotate(look_at({0, 0, 0}, {3, 0, 0}, {0, 0, 0}).orientation, kUp), kUp);
 }
 
+// A view 2.5 times as wide as high in a frame of 16:9 is as wide as the frame, and 2.5 / (16/9) times as high.
+TEST(Projection, ShowsAllThatItsCameraDoes) {
+  Projection flat{.kind = ProjectionKind::orthographic, .ymag_m = 3, .aspect = 2.5};
+  EXPECT_NEAR(fit_projection(flat, 1920, 1080).ymag_m, 3 * 1.40625, 1e-12);
+  EXPECT_EQ(fit_projection(flat, 1920, 1080).aspect, 0);
+  EXPECT_EQ(fit_projection(flat, 1000, 400).ymag_m, 3);
+  EXPECT_EQ(fit_projection(flat, 1000, 100).ymag_m, 3);  // the frame shows more at the sides
+  const Projection wide{.yfov_rad = kPi / 2, .aspect = 2};
+  EXPECT_NEAR(fit_projection(wide, 100, 100).yfov_rad, 2 * std::atan(2.0), 1e-12);
+  const Projection rounded{.yfov_rad = 1, .aspect = 1.7778};
+  EXPECT_EQ(fit_projection(rounded, 1280, 720).yfov_rad, 1);
+}
+
 TEST(CameraPath, CsvInterpolatesPositionsLinearlyAndOrientationsBySlerp) {
   const TextFiles files;
   // No rotation, then a quarter turn to the left (about +y).

@@ -83,6 +83,21 @@ TEST(PlanFrames, TimesAreMidExposureRoundedDown) {
                                  89'567'963'756'104'166 - 7));
 }
 
+// Numbers move, moments stay.
+TEST(PlanFrames, FramesMayBeCountedFromAnyNumber) {
+  PlanSettings settings = paper_settings();
+  settings.fps = {24, 1};
+  settings.first_frame = 1001;
+  settings.frames = {1001, 1003};
+  const FramePlan plan = plan_frames(still(), nullptr, settings);
+  EXPECT_EQ(plan.frames[0].frame, 1001);
+  EXPECT_EQ(plan.frames[0].t_video_ns, 20'833'333);
+  EXPECT_EQ(plan.frames[1].t_video_ns, 104'166'666);
+  EXPECT_FALSE(has_frame(still(), settings, 1000));
+  settings.frames = {1000};
+  EXPECT_THAT(message_of(still(), nullptr, settings, ErrorKind::usage), HasSubstr("numbered from 1001"));
+}
+
 TEST(PlanFrames, GazeBecomesADirectionFromTheEye) {
   const GazeLog log = screen_log();
   const FramePlan plan = plan_frames(still(), &log, paper_settings());

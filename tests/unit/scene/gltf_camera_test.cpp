@@ -74,6 +74,8 @@ TEST(Cameras, PerspectiveAndOrthographicKeepTheirLenses) {
   EXPECT_TRUE(eye.path.is_static);
   EXPECT_EQ(flat.path.projection.kind, ProjectionKind::orthographic);
   EXPECT_EQ(flat.path.projection.ymag_m, 2);
+  EXPECT_EQ(flat.path.projection.aspect, 1.5);
+  EXPECT_EQ(eye.path.projection.aspect, 0);
   EXPECT_EQ(flat.path.projection.far_m, 100);
   expect_near(flat.path.pose_at(0).position_m, {1, 2, 3});
 }
