@@ -136,6 +136,7 @@ struct TraceStats {
   std::uint64_t learning_paths = 0;  // of PosedScene::learn_light(): no samples, and nothing else here counts them
   std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0;
   std::uint64_t rejected_rays = 0;
+  std::uint64_t seen_backs = 0;          // samples whose camera ray hit the back of a face that is not double-sided
   std::uint64_t non_finite_samples = 0;  // such samples count as black and are always reported here
   std::vector<BadSample> bad_samples;    // the first 16, in pixel order
   std::vector<RegionTraceStats> regions;

@@ -24,6 +24,7 @@ class JobOptions(TypedDict, total=False):
     resume: bool | None
     scene: Value | None
     animation: Value | None
+    cull_back_faces: bool | None
     env: Value | None
     env_rotation: Value | None
     env_ev: Value | None
@@ -114,6 +115,8 @@ class JobOptions(TypedDict, total=False):
     progress: Value | None
     quiet: bool | None
     allow_outside: bool | None
+    allow_missing: bool | None
+    strict: bool | None
     confine: bool | None
     max_memory: Value | None
     chunk: Value | None

@@ -90,6 +90,7 @@ inline bool PathKernel<kLayers>::goes_on(int vertex, std::size_t i, const PathBa
   }
   const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
   const ShadingMaterial& material = frame_.scene->materials[chunk.material[i]];
+  counts_.backs += vertex == 0 && chunk.side[i] < 0 && !material.double_sided ? 1 : 0;
   if (material.unlit) {
     add(slot, clamped(vertex, throughput * chunk.base_color.get(i)), vertex);
     return false;
