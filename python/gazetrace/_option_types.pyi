@@ -101,7 +101,6 @@ class JobOptions(TypedDict, total=False):
     learn_light: bool | None
     clamp_indirect: Value | None
     pixel_filter: Value | None
-    bounce_cone: Value | None
     seed: Value | None
     threads: Value | None
     only_pixel: Value | Sequence[Value] | None

@@ -53,8 +53,9 @@ inline void PathKernel<kLayers>::shade_chunk(int vertex, const RayBatch& rays, c
     chunk.u[i] = work_.hits.u[k];
     chunk.v[i] = work_.hits.v[k];
     chunk.t[i] = work_.hits.t[k];
-    chunk.cone_width[i] = paths.cone_width[k];
-    chunk.cone_spread[i] = paths.cone_spread[k];
+    // The samples of a pixel average textures at full resolution, after a bounce, too: coarser levels there bias the
+    // mean, and were measured to save neither time nor noise.
+    chunk.cone_width[i] = chunk.cone_spread[i] = 0;
   }
   gather_triangles(scene, rays.time, chunk, count);
   place_hits(chunk, count);
