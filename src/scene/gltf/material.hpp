@@ -47,7 +47,7 @@ class TextureTable {
     std::string path;  // empty: in the file itself
     std::vector<std::size_t> entries;
   };
-  int picture_of_image(int image, Warnings& warnings);
+  int picture_of_image(int image);
   ImageRgba decode(const Picture& picture, const std::string& place) const;
 
   // Pictures of one colour pack a thousand to one, and small ones may.
@@ -62,6 +62,7 @@ class TextureTable {
   std::map<std::string, int> picture_by_path_;
   std::map<int, int> picture_by_image_;
   std::map<int, bool> warned_;
+  Warnings missing_;  // pictures, of the last request
 };
 
 std::vector<Material> make_materials(const GltfDocument& document, TextureTable& textures, Warnings& warnings);

@@ -28,7 +28,9 @@ std::string image_place(const GltfDocument& document, int image) {
 
 std::int32_t TextureTable::request(int gltf_texture, TextureUse use, Warnings& warnings) {
   const GltfTexture& texture = document_.textures[static_cast<std::size_t>(gltf_texture)];
-  const int picture = texture.source < 0 ? -1 : picture_of_image(texture.source, warnings);
+  const int picture = texture.source < 0 ? -1 : picture_of_image(texture.source);
+  warnings.insert(warnings.end(), missing_.begin(), missing_.end());
+  missing_.clear();
   if (picture < 0) {
     if (!std::exchange(warned_[gltf_texture], true)) {
       warnings.push_back("textures[" + std::to_string(gltf_texture) +
@@ -48,7 +50,7 @@ std::int32_t TextureTable::request(int gltf_texture, TextureUse use, Warnings& w
   return it->second;
 }
 
-int TextureTable::picture_of_image(int image, Warnings& warnings) {
+int TextureTable::picture_of_image(int image) {
   const auto seen = picture_by_image_.find(image);
   if (seen != picture_by_image_.end()) {
     return seen->second;
@@ -67,7 +69,7 @@ int TextureTable::picture_of_image(int image, Warnings& warnings) {
         throw Error(ErrorKind::input, image_place(document_, image), "there is no picture '" + path + "'",
                     "bring it there, or give `allow-missing` to show the scene without it");
       }
-      warnings.push_back(image_place(document_, image) + ": there is no picture '" + path + "'");
+      missing_.push_back(image_place(document_, image) + ": there is no picture '" + path + "'");
       return picture_by_image_[image] = -1;
     }
     const auto [it, is_new] = picture_by_path_.try_emplace(path, static_cast<int>(pictures_.size()));
