@@ -52,6 +52,9 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   double environment_ev = 0;
   ByteCount max_memory;  // 0: most_memory_bytes()
   bool allow_outside = false;
+  bool allow_missing = false;
+  bool strict = false;
+  bool cull_back_faces = false;
   bool confine = false;  // as for load_job()
 
   // Scene camera

@@ -55,6 +55,8 @@ struct SequenceResult {
   bool interrupted = false;
   std::vector<std::int32_t> left;
   std::uint64_t clamped_half_values = 0, clamped_view_pixels = 0;
+  // Camera rays of this run, and those of them that hit the back of a face whose material is not double-sided.
+  std::uint64_t camera_rays = 0, seen_backs = 0;
   std::size_t dark_pictures = 0;                           // display pictures of which half is below 2 % of white
   std::vector<std::pair<std::string, std::string>> facts;  // decided while rendering; for RunRecord::facts
   Warnings warnings;

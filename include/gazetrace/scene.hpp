@@ -88,7 +88,7 @@ struct PunctualLight {
   std::string name;
   LightKind kind = LightKind::point;
   Vec3f intensity{1, 1, 1};  // colour * intensity: W/sr (point, spot) or W/m^2 (directional)
-  Vec3f position_m;
+  Vec3d position_m;
   Vec3f direction{0, 0, -1};                     // the way the light travels (directional, spot)
   float range_m = 0;                             // 0: infinite
   float cos_inner = 1, cos_outer = 0.70710678F;  // of a spot's cone angles: full intensity inside, none outside
@@ -137,6 +137,9 @@ struct Scene {
   std::vector<PunctualLight> lights;
   std::vector<SceneCamera> cameras;
   Environment environment;
+  // Camera rays pass the backs of triangles whose material is not double-sided (glTF 2.0 section 3.9.5); rays after a
+  // bounce, and to lights, never do.
+  bool cull_back_faces = false;
   std::string own_environment;  // the picture that the file names in its extras; empty: none. It is not read
 
   std::vector<std::string> animations;  // names; "#0" where the file gives none
@@ -168,6 +171,9 @@ struct SceneReadOptions {
   // The scene may name files outside of its data set. Otherwise buffers and pictures must lie, symbolic links followed,
   // in the scene's folder or in the data set that it belongs to, see src/core/data_root.hpp.
   bool allow_outside = false;
+  bool allow_missing = false;    // a material whose picture is not there is shown without it, with a warning
+  bool cull_back_faces = false;  // becomes Scene::cull_back_faces
+  bool strict = false;           // whatever is else a warning of the scene is an Error(input)
 };
 
 // What a scene will take in memory, from its JSON and the headers of its pictures: no picture is decoded.
@@ -209,7 +215,7 @@ struct SceneSummary {
   std::uint64_t vertices = 0, meshes = 0, geometries = 0, instances = 0;
   std::uint64_t materials = 0, textures = 0, lights = 0, emissive_triangles = 0;
   std::uint64_t geometry_bytes = 0, texture_bytes = 0;
-  Vec3d bounds_min, bounds_max;  // world; min > max when empty
+  Vec3d bounds_min, bounds_max;  // of all vertices at rest, in the world; min > max when empty
 };
 SceneSummary summarize(const Scene& scene);
 

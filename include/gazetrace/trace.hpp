@@ -35,13 +35,9 @@ struct TraceSettings {
   // Upper bound (radiance, on the largest channel) of each contribution that reaches the camera after more than one
   // scattering event. It removes fireflies, and with them the light that they stand for. 0: off, unbiased.
   double clamp_indirect = 0;
-  // At each bounce the ray cone opens by this angle times 1 / sqrt(pi pdf), that is by about the whole angle for a
-  // diffuse bounce and hardly at all for a mirror, so that hits after a bounce read coarser texture levels. 0: full
-  // resolution.
-  double bounce_cone_rad = 0.15;
   // The frame first learns from some paths of its own where its light arrives from, and draws bounces towards it
-  // (PosedScene::learn_light). Means do not change but for texture levels after a bounce (bounce_cone_rad). Frames take
-  // less samples for the same noise where most of the sky is hidden, and a little more time where it is not.
+  // (PosedScene::learn_light). Means do not change. Frames take less samples for the same noise where most of the sky
+  // is hidden, and a little more time where it is not.
   // FrameRenderer does it; trace() itself only follows `learned`.
   bool learn_light = true;
   // What the frame has learned: trace() draws bounces by it. Empty: by the BSDF alone, whatever `learn_light` says.
@@ -137,6 +133,7 @@ struct TraceStats {
   std::uint64_t learning_paths = 0;  // of PosedScene::learn_light(): no samples, and nothing else here counts them
   std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0;
   std::uint64_t rejected_rays = 0;
+  std::uint64_t seen_backs = 0;          // samples whose camera ray hit the back of a face that is not double-sided
   std::uint64_t non_finite_samples = 0;  // such samples count as black and are always reported here
   std::vector<BadSample> bad_samples;    // the first 16, in pixel order
   std::vector<RegionTraceStats> regions;

@@ -25,6 +25,7 @@ class JobOptions(TypedDict, total=False):
     resume: bool | None
     scene: Value | None
     animation: Value | None
+    cull_back_faces: bool | None
     env: Value | None
     env_rotation: Value | None
     env_ev: Value | None
@@ -103,7 +104,6 @@ class JobOptions(TypedDict, total=False):
     learn_light: bool | None
     clamp_indirect: Value | None
     pixel_filter: Value | None
-    bounce_cone: Value | None
     seed: Value | None
     threads: Value | None
     only_pixel: Value | Sequence[Value] | None
@@ -117,6 +117,8 @@ class JobOptions(TypedDict, total=False):
     progress: Value | None
     quiet: bool | None
     allow_outside: bool | None
+    allow_missing: bool | None
+    strict: bool | None
     confine: bool | None
     max_memory: Value | None
     chunk: Value | None

@@ -2,6 +2,7 @@
 #include "core/data_root.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <string_view>
 #include <system_error>
@@ -107,6 +108,27 @@ void add_root(std::vector<fs::path>& roots, const fs::path& folder) {
   }
 }
 
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') {
+    return c - '0';
+  }
+  const int lower = std::tolower(static_cast<unsigned char>(c));
+  return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
+}
+
+std::string percent_decoded(std::string_view uri) {
+  std::string text;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] == '%' && i + 2 < uri.size() && hex_digit(uri[i + 1]) >= 0 && hex_digit(uri[i + 2]) >= 0) {
+      text += static_cast<char>(hex_digit(uri[i + 1]) * 16 + hex_digit(uri[i + 2]));
+      i += 2;
+    } else {
+      text += uri[i];
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::vector<fs::path> data_roots(const std::string& path) {
@@ -126,6 +148,21 @@ void check_within(const std::vector<fs::path>& roots, const std::string& named, 
   throw Error(ErrorKind::input, place,
               "'" + bounded(words, 200) + "' leads outside of '" + roots.front().string() + "', where the data lies",
               remedy);
+}
+
+std::string file_of_uri(const std::string& path, std::string_view uri) {
+  // Not resolved: where a folder on the way is a link, `..` behind it leads elsewhere.
+  const auto place = [&](const std::string& name) {
+    return (fs::path(path).parent_path() / name).lexically_normal().string();
+  };
+  std::string name = percent_decoded(uri);
+  std::string file = place(name);
+  std::error_code unknown;
+  if (name.find('\\') != std::string::npos && !fs::exists(file, unknown)) {
+    std::replace(name.begin(), name.end(), '\\', '/');
+    file = place(name);
+  }
+  return file;
 }
 
 }  // namespace gazetrace

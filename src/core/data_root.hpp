@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gazetrace {
@@ -19,5 +20,9 @@ std::vector<std::filesystem::path> data_roots(const std::string& path);
 void check_within(const std::vector<std::filesystem::path>& roots, const std::string& named, const std::string& words,
                   const std::string& place,
                   const std::string& remedy = "copy the file there, or give `allow-outside` where you trust the data");
+
+// The file that a uri in the file `path` names, relative to the folder of that. Percent escapes are decoded (RFC 3986,
+// section 2.1). Where nothing has that name, backslashes in it separate folders, as on Windows.
+std::string file_of_uri(const std::string& path, std::string_view uri);
 
 }  // namespace gazetrace

@@ -88,6 +88,9 @@ void finish_run_record(RunRecord& record, const SequenceResult& result, const Fr
   record.files = result.files;
 }
 
+// The share of all camera rays from which on it is no chance of an edge.
+constexpr double kNoticedBacks = 1e-3;
+
 Warnings result_warnings(const SequenceResult& result, const FramePlan& plan) {
   Warnings warnings = result.warnings;
   const auto count = [&](GazeState state) {
@@ -113,6 +116,14 @@ Warnings result_warnings(const SequenceResult& result, const FramePlan& plan) {
         fmt::format("{} of {} pictures {} dark, half of each below 2 % of white: `exposure` (auto, or more stops) "
                     "and `env` (sky, or a picture) bring light",
                     result.dark_pictures, result.rows.size(), result.dark_pictures == 1 ? "is" : "are"));
+  }
+  const double backs =
+      static_cast<double>(result.seen_backs) / static_cast<double>(std::max<std::uint64_t>(result.camera_rays, 1));
+  if (backs >= kNoticedBacks) {
+    warnings.push_back(fmt::format(
+        "in {:.2g} % of the pictures, by their samples, the camera sees the back of faces that are not double-sided, "
+        "which glTF does not draw: `cull-back-faces` looks through them",
+        100 * backs));
   }
   if (result.clamped_view_pixels > 0) {
     warnings.push_back(fmt::format("{} pixels were clamped before the viewing transform", result.clamped_view_pixels));

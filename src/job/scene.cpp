@@ -69,11 +69,19 @@ SceneReadOptions scene_read_options(const JobSettings& job) {
   options.threads = job.threads;
   options.memory_bytes = job.max_memory.bytes;
   options.allow_outside = job.allow_outside;
+  options.allow_missing = job.allow_missing;
+  options.strict = job.strict;
+  options.cull_back_faces = job.cull_back_faces;
   return options;
 }
 
 void check_scene_shows(const Scene& scene) {
-  if (summarize(scene).triangles_instanced > 0) {
+  const auto shows = [&](const Instance& instance) {
+    const auto& geometries = scene.meshes[static_cast<std::size_t>(instance.mesh)].geometries;
+    return std::any_of(geometries.begin(), geometries.end(),
+                       [](const Geometry& part) { return !part.triangles.empty(); });
+  };
+  if (std::any_of(scene.instances.begin(), scene.instances.end(), shows)) {
     return;
   }
   std::vector<std::string> left_out = scene.ignored;

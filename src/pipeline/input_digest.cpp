@@ -30,30 +30,6 @@ std::string read_bytes(std::ifstream& file, std::size_t count) {
   return bytes;
 }
 
-int hex_value(char c) {
-  if (c >= '0' && c <= '9') {
-    return c - '0';
-  }
-  if (c >= 'a' && c <= 'f') {
-    return c - 'a' + 10;
-  }
-  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
-}
-
-// RFC 3986, section 2.1.
-std::string percent_decoded(const std::string& uri) {
-  std::string text;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    if (uri[i] == '%' && i + 2 < uri.size() && hex_value(uri[i + 1]) >= 0 && hex_value(uri[i + 2]) >= 0) {
-      text += static_cast<char>(hex_value(uri[i + 1]) * 16 + hex_value(uri[i + 2]));
-      i += 2;
-    } else {
-      text += uri[i];
-    }
-  }
-  return text;
-}
-
 // The JSON of a .gltf, or of a .glb's first chunk (glTF 2.0, section 4.4). What is broken here is left to the reader
 // of scenes, whose messages are better: the result is then empty.
 std::string json_text(const std::string& path) {
@@ -83,8 +59,7 @@ std::vector<std::string> scene_files(const std::string& path, bool allow_outside
     if (text.empty() || text.starts_with("data:")) {
       return;
     }
-    // As the reader of scenes names it: where a folder on the way is a link, `..` behind it leads elsewhere.
-    const std::string file = (fs::path(path).parent_path() / percent_decoded(text)).lexically_normal().string();
+    const std::string file = file_of_uri(path, text);
     if (!allow_outside) {
       check_within(roots, file, text, path + ": " + kind);
     }

@@ -116,6 +116,8 @@ RenderedFrame make_frame(const SequenceInputs& inputs, const FrameRequest& reque
   RenderedFrame rendered = frames.render(request);
   add_samples(rendered.samples, rendered.pilot, rendered.map, row);
   add_others(rendered.others, row);
+  result.camera_rays += rendered.samples.rays_primary;
+  result.seen_backs += rendered.samples.seen_backs;
   result.bad_samples.insert(result.bad_samples.end(), rendered.samples.bad_samples.begin(),
                             rendered.samples.bad_samples.end());
   add_times(rendered.times, row);

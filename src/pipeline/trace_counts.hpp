@@ -26,6 +26,7 @@ void add_counts(const From& from, To& to) {
 // Of traces whose regions need not be the same: they are kept one after the other, for their time.
 inline void add_traces(const TraceStats& from, TraceStats& to) {
   add_counts(from, to);
+  to.seen_backs += from.seen_backs;
   to.bad_samples.insert(to.bad_samples.end(), from.bad_samples.begin(), from.bad_samples.end());
   to.regions.insert(to.regions.end(), from.regions.begin(), from.regions.end());
   to.kernel = from.kernel;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <mutex>
 #include <utility>
 
@@ -25,11 +26,40 @@
 namespace gazetrace {
 namespace {
 
+// How far vertices reach, by the largest coordinate: of the box around them its nearest and farthest corner, and its
+// size.
+struct VertexReach {
+  double nearest = 0, farthest = 0, size = 0;
+};
+VertexReach reach_of(const std::vector<Vec3f>& positions) {
+  VertexReach reach;
+  for (const auto axis : {&Vec3f::x, &Vec3f::y, &Vec3f::z}) {
+    float low = std::numeric_limits<float>::infinity();
+    float high = -low;
+    for (const Vec3f& position : positions) {
+      low = std::min(low, position.*axis);
+      high = std::max(high, position.*axis);
+    }
+    if (low <= high) {
+      const double away = low > 0 ? low : std::max(-high, 0.0F);
+      reach.nearest = std::max(reach.nearest, away);
+      reach.farthest =
+          std::max({reach.farthest, std::fabs(static_cast<double>(low)), std::fabs(static_cast<double>(high))});
+      reach.size = std::max(reach.size, static_cast<double>(high) - static_cast<double>(low));
+    }
+  }
+  return reach;
+}
+
 void list_extensions(const GltfDocument& document, Scene& scene) {
   const auto& known = known_gltf_extensions();
   for (const std::string& name : document.extensions_used) {
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       scene.ignored.push_back("extension " + name);
+      if (const char* shown = shown_without(name)) {
+        scene.warnings.push_back("the scene uses " + name + ": " + shown);
+        continue;
+      }
       scene.warnings.push_back("the scene uses " + name +
                                (name == "KHR_texture_basisu"
                                     ? ", which cannot be read; the textures' fallback pictures are used"
@@ -38,16 +68,35 @@ void list_extensions(const GltfDocument& document, Scene& scene) {
   }
 }
 
-// Rays are traced in single precision, whose numbers are 2^-23 of their own size apart.
-void warn_of_offset(const GltfDocument& document, Warnings& warnings) {
+// Where transforms place a body far from the world's origin, it loses nothing. Vertices that are far from the origin of
+// their own mesh are coarse in the file.
+void warn_of_coarse_vertices(const Scene& scene, Warnings& warnings) {
   constexpr double kNoticeable_m = 1e-3;
-  const double apart_m = length(document.offset_m) * std::ldexp(1.0, -23);
-  if (apart_m > kNoticeable_m) {
-    std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(),
-                  "CESIUM_RTC puts the scene %.0f km from the origin, where coordinates are %.2g m apart in single "
-                  "precision; without the extension it stands at the origin",
-                  length(document.offset_m) / 1000, apart_m);
+  constexpr double kNoticeableShare = 1e-4;  // of the size of the part
+  double coarsest_m = 0;
+  std::string where;
+  std::size_t parts = 0;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+    const double scale = std::cbrt(std::fabs(determinant(instance.to_world)));
+    for (const Geometry& geometry : mesh.geometries) {
+      const VertexReach reach = reach_of(geometry.positions);
+      const double apart_m = std::ldexp(reach.farthest, -23) * scale;  // float's steps at that distance
+      const bool is_far = reach.nearest > reach.size;
+      if (is_far && (apart_m > kNoticeable_m || apart_m > kNoticeableShare * reach.size * scale)) {
+        ++parts;
+        where = apart_m > coarsest_m ? mesh.name : where;
+        coarsest_m = std::max(coarsest_m, apart_m);
+      }
+    }
+  }
+  if (parts > 0) {
+    std::array<char, 200> text{};
+    std::snprintf(
+        text.data(), text.size(),
+        "the vertices of %zu parts are so far from their own origin that the file holds them in steps of up to "
+        "%.2g m (mesh '%.60s'); put the distance into their nodes",
+        parts, coarsest_m, where.c_str());
     warnings.emplace_back(text.data());
   }
 }
@@ -94,6 +143,32 @@ class LoadCount {
   std::mutex mutex_;
 };
 
+void warn_of_backslashes(const OpenScene& open, Warnings& warnings) {
+  const auto add = [&](const std::string& uri) {
+    if (!is_data_uri(uri) && uri.find('\\') != std::string::npos) {
+      warnings.push_back("the uri '" + bounded(uri, 200) +
+                         "' holds a backslash, which glTF does not allow; it was read as /");
+    }
+  };
+  for (const GltfBufferSource& buffer : open.checked.buffers) {
+    add(buffer.uri);
+  }
+  for (const GltfImageSource& image : open.document.images) {
+    add(image.uri);
+  }
+}
+
+void refuse_warnings(const Scene& scene) {
+  if (!scene.warnings.empty()) {
+    throw Error(
+        ErrorKind::input, scene.source,
+        scene.warnings.front() + (scene.warnings.size() == 1
+                                      ? std::string()
+                                      : "; and " + std::to_string(scene.warnings.size() - 1) + " more warnings"),
+        "mend it, or leave `strict` out");
+  }
+}
+
 void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
@@ -109,7 +184,7 @@ SceneEstimate estimate_scene(const std::string& path, const SceneReadOptions& op
     open.document.buffers = load_buffers(open.file, open.checked.buffers, storage);
   }
   Warnings unused;
-  TextureTable textures(open.document, memory_limit(options));
+  TextureTable textures(open.document, memory_limit(options), options.allow_missing);
   make_materials(open.document, textures, unused);
   add_pictures(textures, options.threads, estimate);
   return estimate;
@@ -130,16 +205,17 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
 
   Scene scene;
   scene.source = path;
+  scene.cull_back_faces = options.cull_back_faces;
   scene.extensions_used = document.extensions_used;
   if (!document.environment_uri.empty()) {
     scene.own_environment =
         resolve_uri(path, file.roots, document.environment_uri, path + ": extras.gazetrace.environment");
   }
   list_extensions(document, scene);
+  warn_of_backslashes(open, scene.warnings);
   list_unshown(document, scene);
-  warn_of_offset(document, scene.warnings);
 
-  TextureTable textures(document, memory_limit(options));
+  TextureTable textures(document, memory_limit(options), options.allow_missing);
   scene.materials = make_materials(document, textures, scene.warnings);
   add_pictures(textures, options.threads, estimate);
   check_memory(estimate, memory_limit(options), path);
@@ -171,12 +247,16 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
   scene.instances = std::move(placed.instances);
   scene.motions = std::move(placed.motions);
   scene.deformations = std::move(placed.deformations);
+  warn_of_coarse_vertices(scene, scene.warnings);
   scene.lights = make_lights(document, nodes, scene.warnings);
   warn_of_lights_behind_glass(scene, scene.warnings);
   scene.cameras = make_cameras(document, nodes, parents, scene.warnings);
   list_unshown_motion(document, nodes, parents, scene.ignored, scene.warnings);
   for (std::size_t i = 0; i < document.animations.size(); ++i) {
     scene.animations.push_back(animation_name(document, i));
+  }
+  if (options.strict) {
+    refuse_warnings(scene);
   }
   return scene;
 }

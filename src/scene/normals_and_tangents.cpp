@@ -93,6 +93,9 @@ std::uint32_t double_vertex(Geometry& geometry, std::uint32_t vertex) {
     copy(target.positions);
     copy(target.normals);
     copy(target.tangents);
+    copy(target.uv0);
+    copy(target.uv1);
+    copy(target.colors);
   }
   return static_cast<std::uint32_t>(geometry.positions.size() - 1);
 }
@@ -157,6 +160,9 @@ void make_flat_normals(Geometry& geometry) {
   geometry.influences = gathered(geometry.influences, geometry.triangles);
   for (MorphTarget& target : geometry.morph_targets) {
     target.positions = gathered(target.positions, geometry.triangles);
+    target.uv0 = gathered(target.uv0, geometry.triangles);
+    target.uv1 = gathered(target.uv1, geometry.triangles);
+    target.colors = gathered(target.colors, geometry.triangles);
     target.normals.clear();
     target.tangents.clear();
   }

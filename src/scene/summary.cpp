@@ -27,8 +27,15 @@ struct Box {
   }
 };
 
-// Adds the corners of a mesh's own box to the world's; the result is exact where the mesh is not rotated, else too
-// large.
+bool is_along_one_axis(const Vec3d& v) {
+  return (v.x != 0 ? 1 : 0) + (v.y != 0 ? 1 : 0) + (v.z != 0 ? 1 : 0) <= 1;
+}
+
+// The corners of a box stand for all vertices in it only where their axes stay axes.
+bool keeps_boxes(const Affine& map) {
+  return is_along_one_axis(map.x) && is_along_one_axis(map.y) && is_along_one_axis(map.z);
+}
+
 void add_corners(Box& world, const Box& own, const Affine& to_world) {
   for (unsigned corner = 0; corner < 8; ++corner) {
     world.add(transform_point(to_world,
@@ -100,17 +107,23 @@ SceneSummary summarize(const Scene& scene) {
     const auto mesh = static_cast<std::size_t>(instance.mesh);
     summary.triangles_instanced += triangles[mesh];
     summary.emissive_triangles += emissive[mesh];
-    Box own = boxes[mesh];
-    if (instance.deformation >= 0) {
-      own = Box{};
-      for (const Geometry& geometry : scene.meshes[mesh].geometries) {
+    if (instance.deformation < 0 && keeps_boxes(instance.to_world)) {
+      add_corners(world, boxes[mesh], instance.to_world);
+      continue;
+    }
+    const auto add = [&](const std::vector<Vec3f>& positions) {
+      for (const Vec3f& position : positions) {
+        world.add(transform_point(instance.to_world, to_double(position)));
+      }
+    };
+    for (const Geometry& geometry : scene.meshes[mesh].geometries) {
+      if (instance.deformation < 0) {
+        add(geometry.positions);
+      } else {
         const MeshPose& rest = scene.deformations[static_cast<std::size_t>(instance.deformation)].rest;
-        for (const Vec3f& position : deform(geometry, rest, TextureRef{}).positions) {
-          own.add(to_double(position));
-        }
+        add(deform(geometry, rest, TextureRef{}).positions);
       }
     }
-    add_corners(world, own, instance.to_world);
   }
   summary.bounds_min = world.low;
   summary.bounds_max = world.high;

@@ -76,7 +76,7 @@ std::string light_of_references(const SweepPlan& plan) {
   for (const SweepReference& reference : plan.references) {
     const TraceSettings& trace = reference.pipeline.trace;
     texts.push_back(fmt::format(
-        "{} bounces, a bounce cone of {:g} rad, {}, {}, {}, filter {}", trace.max_bounces, trace.bounce_cone_rad,
+        "{} bounces, {}, {}, {}, filter {}", trace.max_bounces,
         trace.clamp_indirect > 0 ? fmt::format("indirect light clamped at {:g}", trace.clamp_indirect)
                                  : "indirect light not clamped",
         trace.russian_roulette ? "Russian roulette" : "no Russian roulette",

@@ -111,6 +111,7 @@ void add_stats(const RangeResult& range, TraceStats& stats) {
   stats.rays_bounce += range.counts.rays_bounce;
   stats.rays_shadow += range.counts.rays_shadow;
   stats.rejected_rays += range.counts.rejected;
+  stats.seen_backs += range.counts.backs;
   stats.non_finite_samples += range.summed.non_finite;
   for (const BadSample& bad : range.summed.bad) {
     keep_first(stats.bad_samples, bad);

@@ -70,8 +70,6 @@ Options parse(int argc, char** argv) {
       options.rounds = std::atoi(value);
     } else if (name == "--share") {
       options.share = std::strtoul(value, nullptr, 10);
-    } else if (name == "--cone") {
-      options.settings.bounce_cone_rad = std::strtod(value, nullptr);
     } else if (name == "--eye") {
       options.eye = parse_point(value);
     } else if (name == "--target") {

@@ -3,7 +3,7 @@
 // rates.
 //   gazetrace_light_choice SCENE.gltf[=SKY.hdr] | lamps:N  [--eye X,Y,Z] [--target X,Y,Z] [--fov DEG] [--size 320x180]
 //       [--rows learned,bsdf-only,learned+roulette] [--spp 1,4,16,64] [--seeds 16] [--reference 4x256]
-//       [--bounces N] [--bounce-cone RAD]
+//       [--bounces N]
 // A row is one or several of the words of kWords.
 // The reference is rendered with the default choice: so many scramblings of so many samples, none of them a row's. Rows
 // take turns frame by frame, on one thread. Printed for each row and rate:
@@ -77,8 +77,6 @@ Options parse(int argc, char** argv) {
       options.rates = parse_numbers(value);
     } else if (name == "--seeds") {
       options.seeds = std::atoi(value);
-    } else if (name == "--bounce-cone") {
-      options.settings.bounce_cone_rad = std::atof(value);
     } else if (name == "--bounces") {
       options.settings.max_bounces = std::atoi(value);
     } else if (name == "--reference") {

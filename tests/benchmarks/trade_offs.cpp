@@ -87,14 +87,11 @@ std::vector<Row> make_rows(PathTracer& tracer, double frame_mean) {
   TraceSettings usual;
   usual.max_bounces = 3;
   usual.russian_roulette = false;
-  TraceSettings exact = usual;
-  exact.bounce_cone_rad = 0;
   const auto add = [&](std::string name, bool biased, const std::function<void(TraceSettings&, TraceSettings&)>& set) {
     Row row{std::move(name), usual, usual, &tracer, biased};
     set(row.settings, row.exact);
     rows.push_back(std::move(row));
   };
-  add("3 bounces, against exact textures", true, [&](auto&, auto& reference) { reference = exact; });
   for (const int bounces : {1, 2, 3, 4, 6}) {
     add(fmt::format("--bounces {}", bounces), true, [&](auto& settings, auto& reference) {
       settings.max_bounces = bounces;
@@ -106,12 +103,6 @@ std::vector<Row> make_rows(PathTracer& tracer, double frame_mean) {
     settings.max_bounces = 8;
     settings.russian_roulette = true;
   });
-  for (const double cone : {0.0, 0.05, 0.3, 0.6}) {
-    add(fmt::format("--bounce-cone {}", cone), true, [&](auto& settings, auto& reference) {
-      settings.bounce_cone_rad = cone;
-      reference.bounce_cone_rad = 0;
-    });
-  }
   for (const double means : {100.0, 10.0, 3.0, 1.0}) {
     const double limit = means * frame_mean;
     add(fmt::format("--clamp-indirect {:.3g} ({} means)", limit, means), true,

@@ -163,7 +163,7 @@ class SweepRows(harness.CliTest):
         text = (self.folder / "out/methods.txt").read_text()
         for words in ("the view built-in", "0.007", "gamma 2.2", "epsilon of 0.03", "5 exposures from -9.5 stops to", "bilinear",
                       "begin at 0, 2.6, 5.2, 8.5, 17, 30, 60 degrees", "ends at 2.6", "8.5 degrees",
-                      "16 bounces, a bounce cone of 0.15 rad"):
+                      "16 bounces, indirect light not clamped"):
             self.assertIn(words, text)
         self.assertEqual(self.results()["regions_deg"], [2.6, 8.5])
 

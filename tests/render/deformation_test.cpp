@@ -85,6 +85,72 @@ TEST(Deformation, AnInstantIsSharpAndWhereItShouldBe) {
   }
 }
 
+// Two squares whose fronts shine towards the camera, at x < 0 and x > 0, with a joint each. A joint that mirrors along
+// the view keeps the front in front: glTF 2.0, section 3.7.4.
+TEST(Deformation, MirroringIsOfEachJoint) {
+  const Affine plain;
+  const Affine mirror{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
+  for (const bool first : {false, true}) {
+    Scene scene;
+    scene.materials = {diffuse_material({0, 0, 0}, {1, 1, 1})};
+    const float side = first ? 1.0F : -1.0F;  // of the square whose joint mirrors it, before it does
+    Geometry left = quad({{{-3, -1, 0}, {-1, -1, 0}, {-1, 1, 0}, {-3, 1, 0}}}, 0);
+    Geometry right = quad({{{side - 1, -1, 0}, {side + 1, -1, 0}, {side + 1, 1, 0}, {side - 1, 1, 0}}}, 0);
+    left.influences = {1, {0, 0, 0, 0}, {1, 1, 1, 1}};
+    right.influences = {1, {1, 1, 1, 1}, {1, 1, 1, 1}};
+    add_mesh(scene, {left, right});
+    deform_instance(scene, 0, [=](std::int64_t t) {
+      return seconds(t) < 0.5 ? MeshPose{{}, {plain, mirror}} : MeshPose{{}, {mirror, plain}};
+    });
+    PathTracer tracer(scene, threads(2));
+    const SamplingMap map = uniform_map(kWidth, kHeight, 4);
+    for (const std::int64_t t : {std::int64_t{0}, kSecond}) {
+      const auto lit = column_means(tracer.at({t, t}).trace(flat_camera(), 1, map, emission_only()), map);
+      const double turned_left = t == 0 ? 1 : -1;
+      const double turned_right = t == 0 ? -side : side;
+      for (int c = 0; c < kWidth; ++c) {
+        const double x = (c + 0.5 - kWidth / 2.0) / 8.0;
+        const bool on_left = std::fabs(x + 2 * turned_left) < 1;
+        const bool on_right = std::fabs(x - turned_right) < 1;
+        EXPECT_EQ(lit[static_cast<std::size_t>(c)], on_left || on_right ? 1.0 : 0.0) << t << ' ' << x;
+      }
+    }
+  }
+}
+
+// Unlit, so that the radiance is the colour of the vertices times that of the texture, of two texels side by side.
+TEST(Deformation, ColoursAndTextureCoordinatesMorph) {
+  Scene scene;
+  scene.materials = {diffuse_material({1, 1, 1})};
+  scene.materials[0].unlit = true;
+  scene.materials[0].base_color_texture.texture = 0;
+  Texture texture;
+  texture.nearest = true;
+  texture.levels = {{2, 1, {255, 255, 255, 255, 0, 255, 255, 255}}};
+  scene.textures = {texture};
+  Geometry square = quad({{{-4, -1, 0}, {4, -1, 0}, {4, 1, 0}, {-4, 1, 0}}}, 0);
+  square.uv0.assign(4, {0.25F, 0.5F});
+  square.colors.assign(4, {1, 1, 0.5F, 1});
+  MorphTarget darker;
+  darker.colors.assign(4, {0, -1, 0, 0});
+  MorphTarget beside;
+  beside.uv0.assign(4, {0.5F, 0});
+  square.morph_targets = {darker, beside};
+  add_mesh(scene, {square});
+  deform_instance(scene, 0, [](std::int64_t t) {
+    return MeshPose{{std::min(seconds(t), 0.75), seconds(t) < 1 ? 0.0 : 1.0}, {}};
+  });
+  PathTracer tracer(scene, threads(2));
+  const SamplingMap map = uniform_map(kWidth, kHeight, 1);
+  for (const double t_s : {0.25, 2.0, 0.0, 0.5}) {
+    const auto t = static_cast<std::int64_t>(t_s * 1e9);
+    const Vec3d mean = mean_radiance(tracer.at({t, t}).trace(flat_camera(), 1, map, emission_only()));
+    EXPECT_NEAR(mean.x, t_s < 1 ? 1 : 0, 1e-6) << t_s;
+    EXPECT_NEAR(mean.y, 1 - std::min(t_s, 0.75), 1e-6) << t_s;
+    EXPECT_NEAR(mean.z, 0.5, 1e-6) << t_s;
+  }
+}
+
 TEST(Deformation, AnEdgeThatMovesWhileTheShutterIsOpenBecomesARamp) {
   const Scene scene = widening_square(2);
   PathTracer tracer(scene, threads(2));

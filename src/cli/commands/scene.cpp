@@ -22,7 +22,7 @@ namespace gazetrace {
 namespace {
 
 // The options of a job that say how its scene is read.
-constexpr std::array<const char*, 3> kReading{"animation", "allow-outside", "max-memory"};
+constexpr std::array<const char*, 5> kReading{"animation", "allow-outside", "allow-missing", "strict", "max-memory"};
 
 struct SceneArguments {
   std::string path;

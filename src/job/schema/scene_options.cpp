@@ -11,6 +11,9 @@ void add_scene_options(JobSchema& schema) {
   schema.value("--animation", &JobSettings::animation, "NAME|N", Touch::scene,
                "The animation that plays, by name or number from 0; default: for each body and camera the first that "
                "moves it ('gazetrace scene' lists them)");
+  schema.flag("--cull-back-faces", &JobSettings::cull_back_faces, Touch::scene,
+              "The camera looks through the backs of faces whose material is not double-sided, as glTF says; light and "
+              "reflections see them in any case");
   schema
       .value("--env", &JobSettings::environment, "FILE|sky|soft-sky|constant:R,G,B|none|auto", Touch::light,
              "Light from all around: a lat-long .hdr or .exr, the built-in clear sky with its sun, one without a sun "
@@ -30,6 +33,12 @@ void add_limit_options(JobSchema& schema) {
       .flag("--allow-outside", &JobSettings::allow_outside, Touch::scene,
             "The scene and a BIDS gaze log may lead to files outside of their folder, or of the data set that they "
             "belong to; give it for data that you trust")
+      .decides_nothing();
+  schema.flag("--allow-missing", &JobSettings::allow_missing, Touch::scene,
+              "Materials whose pictures are not there are shown without them, with a warning; else they end the run");
+  schema
+      .flag("--strict", &JobSettings::strict, Touch::scene,
+            "Refuses a scene that has to be mended, or of which something is left out, in place of a warning")
       .decides_nothing();
   schema
       .flag(

@@ -10,7 +10,6 @@ constexpr auto trace(auto member) {
 }
 
 constexpr double kMostBounces = 1000;
-constexpr double kWidestCone = 1000;
 constexpr double kMostThreads = 1024;
 
 void add_light_path_options(JobSchema& schema) {
@@ -54,13 +53,6 @@ void add_texture_options(JobSchema& schema) {
   schema
       .value("--pixel-filter", trace(&TraceSettings::filter), choices<PixelFilter>(), Touch::tracing,
              "Spread of the samples of a pixel; --filter guided has edges and texture of a box in any case")
-      .with(Trait::always_stated);
-  schema
-      .value("--bounce-cone", trace(&TraceSettings::bounce_cone_rad), "RADIANS", Touch::tracing,
-             "Texture detail after bounces: how much a diffuse bounce widens the footprint; 0: not at all")
-      .within(0, kWidestCone)
-      .with(Trait::trade_off)
-      .with(Trait::needs_truth)
       .with(Trait::always_stated);
 }
 

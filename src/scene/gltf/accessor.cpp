@@ -132,7 +132,7 @@ std::span<const std::uint8_t> view_bytes(const GltfDocument& document, int buffe
 }
 
 std::vector<float> read_floats(const GltfDocument& document, int accessor_index, int components,
-                               const std::string& place) {
+                               const std::string& place, std::size_t* not_finite) {
   const GltfAccessor& accessor = document.accessors[static_cast<std::size_t>(accessor_index)];
   if (accessor.components != components) {
     throw Error(ErrorKind::input, place,
@@ -148,8 +148,14 @@ std::vector<float> read_floats(const GltfDocument& document, int accessor_index,
     apply_sparse(document, accessor, place, values,
                  [&](const Source& source, float* out) { copy_floats(source, accessor, 1, out); });
   }
-  const auto bad = std::find_if_not(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
-  if (bad != values.end()) {
+  const auto is_finite = [](float value) { return std::isfinite(value); };
+  for (auto bad = std::find_if_not(values.begin(), values.end(), is_finite); bad != values.end();
+       bad = std::find_if_not(bad, values.end(), is_finite)) {
+    if (not_finite != nullptr) {
+      std::fill_n(bad - (bad - values.begin()) % components, components, 0.0F);
+      ++*not_finite;
+      continue;
+    }
     throw Error(ErrorKind::input, place,
                 "element " + std::to_string((bad - values.begin()) / components) + " of accessors[" +
                     std::to_string(accessor_index) + "] is not finite",

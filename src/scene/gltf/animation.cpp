@@ -26,9 +26,10 @@ std::vector<std::int64_t> read_times(const GltfDocument& document, int accessor,
       throw Error(ErrorKind::input, place, "a key time of " + std::to_string(time_s) + " s is out of range");
     }
     times_ns.push_back(std::llround(static_cast<double>(time_s) * 1e9));
-    if (times_ns.size() > 1 && times_ns.back() <= times_ns[times_ns.size() - 2]) {
+    // Two keys of one time are a jump from one value to the other.
+    if (times_ns.size() > 1 && times_ns.back() < times_ns[times_ns.size() - 2]) {
       throw Error(ErrorKind::input, place,
-                  "key " + std::to_string(times_ns.size() - 1) + " is not after the one before it",
+                  "key " + std::to_string(times_ns.size() - 1) + " is before the one in front of it",
                   "export the file again");
     }
   }
@@ -58,12 +59,17 @@ struct RawTrack {
 };
 
 RawTrack read_raw_track(const GltfDocument& document, std::size_t animation, int sampler_index, int components,
-                        std::size_t width) {
+                        std::size_t width, Warnings& warnings) {
   const auto& sampler = document.animations[animation].samplers[static_cast<std::size_t>(sampler_index)];
   const std::string place = animation_place(document, animation, sampler_index);
   RawTrack track;
   track.interpolation = read_interpolation(sampler, place);
   track.times_ns = read_times(document, sampler.input, place + ".input");
+  const auto same = std::adjacent_find(track.times_ns.begin(), track.times_ns.end());
+  if (same != track.times_ns.end()) {
+    warnings.push_back(place + ".input: key " + std::to_string(same - track.times_ns.begin() + 1) +
+                       " has the time of the one before it; what it moves jumps there");
+  }
   track.values = read_floats(document, sampler.output, components, place + ".output");
   const std::size_t a_key = (track.interpolation == KeyInterpolation::cubic_spline ? 3 : 1) * width;
   const std::size_t given = track.values.size() / static_cast<std::size_t>(components);
@@ -76,8 +82,9 @@ RawTrack read_raw_track(const GltfDocument& document, std::size_t animation, int
   return track;
 }
 
-KeyTrack read_track(const GltfDocument& document, std::size_t animation, int sampler, int components) {
-  RawTrack raw = read_raw_track(document, animation, sampler, components, 1);
+KeyTrack read_track(const GltfDocument& document, std::size_t animation, int sampler, int components,
+                    Warnings& warnings) {
+  RawTrack raw = read_raw_track(document, animation, sampler, components, 1, warnings);
   KeyTrack track{raw.interpolation, std::move(raw.times_ns), {}};
   const auto width = static_cast<std::size_t>(components);
   for (std::size_t i = 0; i < raw.values.size(); i += width) {
@@ -135,11 +142,11 @@ void add_tracks(const GltfDocument& document, std::size_t animation, const std::
       warnings.push_back("nodes[" + std::to_string(channel.node) +
                          "] is animated and has a matrix, which glTF forbids; it stays at rest");
     } else if (channel.path == "translation") {
-      node.translation_track = read_track(document, animation, channel.sampler, 3);
+      node.translation_track = read_track(document, animation, channel.sampler, 3, warnings);
     } else if (channel.path == "rotation") {
-      node.rotation_track = read_track(document, animation, channel.sampler, 4);
+      node.rotation_track = read_track(document, animation, channel.sampler, 4, warnings);
     } else {
-      node.scale_track = read_track(document, animation, channel.sampler, 3);
+      node.scale_track = read_track(document, animation, channel.sampler, 3, warnings);
     }
   }
 }
@@ -194,7 +201,7 @@ std::optional<WeightTrack> animated_weights(const GltfDocument& document, int no
   }
   const auto& channels = document.animations[*animation].channels;
   const int sampler = std::find_if(channels.begin(), channels.end(), weighs)->sampler;
-  RawTrack raw = read_raw_track(document, *animation, sampler, 1, targets);
+  RawTrack raw = read_raw_track(document, *animation, sampler, 1, targets, warnings);
   return WeightTrack{raw.interpolation, targets, std::move(raw.times_ns), {raw.values.begin(), raw.values.end()}};
 }
 

@@ -2,6 +2,7 @@
 #include "scene/gltf/check.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -54,7 +55,8 @@ void check_asset(Walker& walker, const Json& root, const std::string& path) {
     }
     for (const Json& item : *list) {
       const auto name = item.get<std::string>();
-      if (std::string_view(key) == "extensionsRequired" && std::find(known.begin(), known.end(), name) == known.end()) {
+      if (std::string_view(key) == "extensionsRequired" && shown_without(name) == nullptr &&
+          std::find(known.begin(), known.end(), name) == known.end()) {
         throw Error(ErrorKind::input, path, "requires the extension " + name + ", which is not supported",
                     remedy_for_extension(name));
       }
@@ -429,6 +431,29 @@ const std::vector<std::string>& known_gltf_extensions() {
     return names;
   }();
   return kKnown;
+}
+
+const char* shown_without(std::string_view extension) {
+  constexpr const char* kNothingDrawn = "nothing of it is drawn";
+  static constexpr std::array<std::pair<std::string_view, const char*>, 14> kShown{{
+      {"KHR_materials_variants", "materials are those that stand without a choice"},
+      {"KHR_node_visibility", "what it hides is left out, and stays so"},
+      {"MSFT_lod", "the finest level is shown"},
+      {"CESIUM_primitive_outline", "outlines are not drawn"},
+      {"KHR_xmp", kNothingDrawn},
+      {"KHR_xmp_json_ld", kNothingDrawn},
+      {"KHR_node_hoverability", kNothingDrawn},
+      {"KHR_node_selectability", kNothingDrawn},
+      {"KHR_audio", kNothingDrawn},
+      {"KHR_audio_emitter", kNothingDrawn},
+      {"EXT_mesh_features", kNothingDrawn},
+      {"EXT_instance_features", kNothingDrawn},
+      {"EXT_structural_metadata", kNothingDrawn},
+      {"FB_ngon_encoding", kNothingDrawn},
+  }};
+  const auto* const it =
+      std::find_if(kShown.begin(), kShown.end(), [&](const auto& row) { return row.first == extension; });
+  return it == kShown.end() ? nullptr : it->second;
 }
 
 CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text, std::uint64_t memory_bytes) {

@@ -32,8 +32,10 @@ struct CheckedGltf {
   std::vector<DracoPrimitive> draco_primitives;
 };
 
-// The extensions that are supported; extensionsRequired may name no others.
+// The extensions that are supported; extensionsRequired may name these and the next ones.
 const std::vector<std::string>& known_gltf_extensions();
+// What is shown of an extension that is not supported and changes no picture of ours; nullptr for every other name.
+const char* shown_without(std::string_view extension);
 
 // `memory_bytes`: as SceneReadOptions, never 0. Error(input) names the file, the JSON place and what is wrong.
 CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text, std::uint64_t memory_bytes);

@@ -9,4 +9,7 @@ inline constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsigne
 // Below are points and lines; the mode of fans is 6.
 inline constexpr int kTriangles = 4, kTriangleStrip = 5;
 
+// The most that a material or a lamp may shine, see Material::emission.
+inline constexpr float kMostLight = 1e30F;
+
 }  // namespace gazetrace

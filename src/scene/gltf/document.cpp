@@ -153,6 +153,10 @@ GltfNode node(const tinygltf::Node& from) {
   if (const Value* light = extension(from.extensions, "KHR_lights_punctual")) {
     to.light = static_cast<int>(number(*light, "light", -1));
   }
+  if (const Value* visibility = extension(from.extensions, "KHR_node_visibility")) {
+    const Value visible = visibility->Has("visible") ? visibility->Get("visible") : Value();
+    to.hidden = visible.IsBool() && !visible.Get<bool>();
+  }
   if (const Value* instancing = extension(from.extensions, "EXT_mesh_gpu_instancing")) {
     for (const auto& [name, accessor] : instancing->Get("attributes").Get<Value::Object>()) {
       to.instancing[name] = accessor.GetNumberAsInt();
@@ -305,7 +309,6 @@ void add_offset(const tinygltf::Model& model, GltfDocument& document) {
   above.children = document.roots;
   document.roots = {static_cast<int>(document.nodes.size())};
   document.nodes.push_back(std::move(above));
-  document.offset_m = document.nodes.back().translation;
 }
 
 bool leave_undecoded(tinygltf::Image* /*image*/, int /*index*/, std::string* /*error*/, std::string* /*warning*/,

@@ -79,6 +79,7 @@ struct GltfNode {
   std::string name;
   int mesh = -1, camera = -1, skin = -1, light = -1;
   std::vector<int> children;
+  bool hidden = false;  // KHR_node_visibility: with everything below it
   bool has_matrix = false;
   Affine matrix;  // used where has_matrix, otherwise the three below
   Vec3d translation{0, 0, 0}, scale{1, 1, 1};
@@ -149,7 +150,6 @@ struct GltfDocument {
   std::vector<int> roots;  // of the default scene, or all root nodes where there is no scene
   std::size_t scene_count = 0;
   std::string environment_uri;  // extras.gazetrace.environment of the default scene; empty: it names none
-  Vec3d offset_m{0, 0, 0};      // CESIUM_RTC, which its own node above all others applies
 };
 
 // Runs the parser on checked JSON. The buffers are left empty for the caller to fill.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -111,27 +110,6 @@ std::optional<std::vector<std::uint8_t>> decode_base64(std::string_view text) {
   return bytes;
 }
 
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') {
-    return c - '0';
-  }
-  const int lower = std::tolower(static_cast<unsigned char>(c));
-  return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
-}
-
-std::string percent_decoded(std::string_view uri) {
-  std::string text;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    if (uri[i] == '%' && i + 2 < uri.size() && hex_digit(uri[i + 1]) >= 0 && hex_digit(uri[i + 2]) >= 0) {
-      text += static_cast<char>(hex_digit(uri[i + 1]) * 16 + hex_digit(uri[i + 2]));
-      i += 2;
-    } else {
-      text += uri[i];
-    }
-  }
-  return text;
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> read_bytes(const std::string& path, const std::string& place, std::uint64_t most_bytes) {
@@ -208,10 +186,9 @@ std::string resolve_uri(const std::string& gltf_path, const std::vector<std::fil
   if (uri.find("://") != std::string_view::npos) {
     throw Error(ErrorKind::input, place, "'" + bounded(uri, 200) + "' is not a file", "download it and use its name");
   }
-  const std::filesystem::path relative(percent_decoded(uri));
-  std::string path = (std::filesystem::path(gltf_path).parent_path() / relative).lexically_normal().string();
+  std::string path = file_of_uri(gltf_path, uri);
   if (!roots.empty()) {
-    check_within(roots, path, relative.string(), place);
+    check_within(roots, path, std::string(uri), place);
   }
   return path;
 }

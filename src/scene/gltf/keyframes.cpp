@@ -16,14 +16,13 @@ struct Span {
 };
 
 Span span_at(const std::vector<std::int64_t>& times, std::int64_t t_ns) {
-  if (t_ns <= times.front()) {
+  const auto second = static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), t_ns) - times.begin());
+  if (second == 0) {
     return {0, 0, 0, 0};
   }
-  if (t_ns >= times.back()) {
-    return {times.size() - 1, times.size() - 1, 0, 0};
+  if (second == times.size() || times[second - 1] == t_ns) {  // of two keys at this time, the later one
+    return {second - 1, second - 1, 0, 0};
   }
-  const auto after = std::upper_bound(times.begin(), times.end(), t_ns);
-  const auto second = static_cast<std::size_t>(after - times.begin());
   const auto length_ns = static_cast<double>(times[second] - times[second - 1]);
   return {second - 1, second, static_cast<double>(t_ns - times[second - 1]) / length_ns, length_ns * 1e-9};
 }

@@ -12,7 +12,8 @@ namespace gazetrace {
 
 enum class KeyInterpolation : std::uint8_t { step, linear, cubic_spline };
 
-// Vectors (w unused) or quaternions over time. Times increase strictly. With cubic_spline there are three values per
+// Vectors (w unused) or quaternions over time. Times do not decrease; of two equal
+// ones, the later holds from that time on. With cubic_spline there are three values per
 // keyframe: in-tangent, value, out-tangent (tangents per second).
 struct KeyTrack {
   KeyInterpolation interpolation = KeyInterpolation::linear;

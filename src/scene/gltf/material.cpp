@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/gltf/constants.hpp"
 #include "scene/gltf/material_extension.hpp"
 
 namespace gazetrace {
@@ -42,9 +43,9 @@ class MaterialBuilder {
     if (!from.unlit) {  // nothing else of an unlit material is visible
       to.metallic_roughness_texture = texture(from.metallic_roughness_texture, TextureUse::data);
       to.normal_texture = texture(from.normal_texture, TextureUse::normal);
-      to.emission = {emission(from.emissive[0]), emission(from.emissive[1]), emission(from.emissive[2])};
+      to.emission = to_float(Vec3d{from.emissive[0], from.emissive[1], from.emissive[2]});
       read_extensions(from, index, to);
-      to.emission = {emission(to.emission.x), emission(to.emission.y), emission(to.emission.z)};
+      to.emission = emission(to.emission);
       if (!(to.emission == Vec3f{})) {
         to.emissive_texture = texture(from.emissive_texture, TextureUse::color);
         if (from.emissive_texture.texture >= 0 && !to.emissive_texture.present()) {
@@ -74,9 +75,12 @@ class MaterialBuilder {
     }
     return static_cast<float>(std::clamp(value, 0.0, 1.0));
   }
-  template <class Number>
-  static float emission(Number value) {
-    return static_cast<float>(std::clamp(value, Number{0}, Number{1e30F}));
+  Vec3f emission(const Vec3f& value) {
+    if (std::max({value.x, value.y, value.z}) > kMostLight) {
+      warnings_.push_back(place_ + ": its emission is above 1e30, which is the most, and was clamped");
+    }
+    const auto channel = [](float x) { return std::clamp(x, 0.0F, kMostLight); };
+    return {channel(value.x), channel(value.y), channel(value.z)};
   }
 
   AlphaMode alpha_mode(const std::string& name) {
@@ -131,7 +135,12 @@ void drop_needless_alpha(const std::vector<Texture>& textures, const std::vector
   std::vector<bool> has_clear_vertices(materials.size(), false);
   for (const Mesh& mesh : meshes) {
     for (const Geometry& geometry : mesh.geometries) {
-      if (std::any_of(geometry.colors.begin(), geometry.colors.end(), [](const Vec4f& color) { return color.w < 1; })) {
+      const auto is_clear = [](const Vec4f& color) { return color.w < 1; };
+      const auto turns_clear = [](const MorphTarget& target) {
+        return std::any_of(target.colors.begin(), target.colors.end(), [](const Vec4f& added) { return added.w != 0; });
+      };
+      if (std::any_of(geometry.colors.begin(), geometry.colors.end(), is_clear) ||
+          std::any_of(geometry.morph_targets.begin(), geometry.morph_targets.end(), turns_clear)) {
         has_clear_vertices[static_cast<std::size_t>(geometry.material)] = true;
       }
     }

@@ -21,11 +21,12 @@ namespace gazetrace {
 // however many entries and glTF images share it.
 class TextureTable {
  public:
-  // `memory_bytes`: as SceneReadOptions, never 0.
-  TextureTable(const GltfDocument& document, std::uint64_t memory_bytes)
-      : document_(document), limits_{kMostExpansion, memory_bytes / 16, true} {}
+  // `memory_bytes`, `allow_missing`: as SceneReadOptions, the first never 0.
+  TextureTable(const GltfDocument& document, std::uint64_t memory_bytes, bool allow_missing)
+      : document_(document), limits_{kMostExpansion, memory_bytes / 16, true}, allow_missing_(allow_missing) {}
 
-  // -1, with one warning per glTF texture, where the file names no picture that can be read.
+  // -1, with one warning per glTF texture, where the file names no picture that can be read. Error(input) for one that
+  // is missing, unless it may be.
   std::int32_t request(int gltf_texture, TextureUse use, Warnings& warnings);
 
   [[nodiscard]] std::size_t picture_count() const { return pictures_.size(); }
@@ -55,12 +56,14 @@ class TextureTable {
 
   const GltfDocument& document_;
   PictureLimits limits_;
+  bool allow_missing_;
   std::vector<Entry> entries_;
   std::vector<Picture> pictures_;
   std::map<std::tuple<int, int, int, bool, TextureUse>, std::int32_t> known_;
   std::map<std::string, int> picture_by_path_;
   std::map<int, int> picture_by_image_;
   std::map<int, bool> warned_;
+  Warnings missing_;  // pictures, of the last request
 };
 
 std::vector<Material> make_materials(const GltfDocument& document, TextureTable& textures, Warnings& warnings);

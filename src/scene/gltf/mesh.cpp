@@ -54,15 +54,15 @@ std::uint32_t joint_of(float number) {
 
 class PrimitiveReader {
  public:
-  PrimitiveReader(const GltfDocument& document, const GltfPrimitive& primitive, std::string place)
-      : document_(document), primitive_(primitive), place_(std::move(place)) {}
+  PrimitiveReader(const GltfDocument& document, const GltfPrimitive& primitive, std::string place, Warnings& warnings)
+      : document_(document), primitive_(primitive), place_(std::move(place)), warnings_(warnings) {}
 
-  Geometry read(const Material& material, std::int32_t material_index, bool with_skin, Warnings& warnings) {
+  Geometry read(const Material& material, std::int32_t material_index, bool with_skin) {
     Geometry geometry;
     geometry.material = material_index;
     geometry.positions = vectors<Vec3f>("POSITION", 3);
     vertex_count_ = geometry.positions.size();
-    geometry.triangles = triangles(warnings);
+    geometry.triangles = triangles();
     const VertexNeeds needs = vertex_needs(material);
     if (needs.uv0) {
       geometry.uv0 = vectors<Vec2f>("TEXCOORD_0", 2);
@@ -70,10 +70,10 @@ class PrimitiveReader {
     if (needs.uv1) {
       geometry.uv1 = vectors<Vec2f>("TEXCOORD_1", 2);
     }
-    read_colors(geometry, warnings);
+    read_colors(geometry);
     read_morph_targets(geometry);
     if (with_skin) {
-      read_influences(geometry, warnings);
+      read_influences(geometry);
     }
     geometry.normals = vectors<Vec3f>("NORMAL", 3);
     if (geometry.normals.empty()) {
@@ -89,18 +89,13 @@ class PrimitiveReader {
       make_tangents(geometry, material.normal_texture);
     }
     if ((needs.uv0 && geometry.uv0.empty()) || (needs.uv1 && geometry.uv1.empty())) {
-      warnings.push_back(place_ + ": its material has textures, the primitive lacks their TEXCOORD; read at uv 0, 0");
+      warnings_.push_back(place_ + ": its material has textures, the primitive lacks their TEXCOORD; read at uv 0, 0");
     }
     return geometry;
   }
 
  private:
   using Attributes = std::map<std::string, int>;
-
-  std::optional<int> accessor(const std::string& attribute) const {
-    const auto it = primitive_.attributes.find(attribute);
-    return it == primitive_.attributes.end() ? std::nullopt : std::optional<int>(it->second);
-  }
 
   // Empty where there is no such attribute. `owner` is the place of the attributes in the JSON.
   std::vector<float> floats(const Attributes& attributes, const std::string& owner, const std::string& attribute,
@@ -116,7 +111,17 @@ class PrimitiveReader {
                   std::to_string(count) + " values for " + std::to_string(*vertex_count_) + " positions",
                   "export the file again");
     }
-    return read_floats(document_, it->second, components, place);
+    // Without a direction or a place in a picture a vertex can still be drawn; without a position or a weight it
+    // cannot.
+    const bool can_be_mended = attribute == "NORMAL" || attribute == "TANGENT" || attribute.starts_with("TEXCOORD_");
+    std::size_t mended = 0;
+    std::vector<float> values =
+        read_floats(document_, it->second, components, place, can_be_mended ? &mended : nullptr);
+    if (mended > 0) {
+      warnings_.push_back(place + ": " + std::to_string(mended) + " elements are not finite; they are taken as zero" +
+                          (attribute.starts_with("TEXCOORD_") ? "" : ", and made from the triangles"));
+    }
+    return values;
   }
 
   std::vector<float> floats(const std::string& attribute, int components) const {
@@ -143,13 +148,23 @@ class PrimitiveReader {
       const auto displacements = [&](const char* attribute) {
         return as_vectors<Vec3f>(floats(primitive_.targets[t], owner, attribute, 3), 3);
       };
-      geometry.morph_targets.push_back({displacements("POSITION"), displacements("NORMAL"), displacements("TANGENT")});
+      MorphTarget target{displacements("POSITION"), displacements("NORMAL"), displacements("TANGENT"), {}, {}, {}};
+      const auto coordinates = [&](const char* attribute, const std::vector<Vec2f>& base) {
+        return base.empty() ? std::vector<Vec2f>()
+                            : as_vectors<Vec2f>(floats(primitive_.targets[t], owner, attribute, 2), 2);
+      };
+      target.uv0 = coordinates("TEXCOORD_0", geometry.uv0);
+      target.uv1 = coordinates("TEXCOORD_1", geometry.uv1);
+      if (!geometry.colors.empty()) {
+        target.colors = colors(primitive_.targets[t], owner, 0);
+      }
+      geometry.morph_targets.push_back(std::move(target));
     }
   }
 
   // Reads JOINTS_n and WEIGHTS_n for all n that exist. Weights are scaled to a sum of 1; where their sum is off by more
   // than rounding, there is a warning.
-  void read_influences(Geometry& geometry, Warnings& warnings) const {
+  void read_influences(Geometry& geometry) const {
     std::vector<std::vector<float>> joints;
     std::vector<std::vector<float>> weights;
     for (std::size_t set = 0;; ++set) {
@@ -170,6 +185,7 @@ class PrimitiveReader {
     JointInfluences& influences = geometry.influences;
     influences.per_vertex = static_cast<std::uint32_t>(4 * sets);
     std::size_t far_off = 0;
+    std::size_t unbound = 0;
     for (std::size_t vertex = 0; vertex < *vertex_count_ && sets > 0; ++vertex) {
       double sum = 0;
       for (std::size_t k = 0; k < 4 * sets; ++k) {
@@ -184,10 +200,11 @@ class PrimitiveReader {
         // The joint of a weight of 0 may be any number.
         influences.joints.push_back(weight > 0 ? joint_of(joints[k / 4][4 * vertex + k % 4]) : 0);
       }
-      if (!(sum > 0)) {
-        throw Error(ErrorKind::input, place_ + ".attributes.WEIGHTS_0",
-                    "all weights of vertex " + std::to_string(vertex) + " are zero: it follows no joint",
-                    "bind it to one and export again");
+      if (!(sum > 0)) {  // as other programs do, it follows the first joint that it names
+        influences.joints[vertex * 4 * sets] = joint_of(joints[0][4 * vertex]);
+        influences.weights[vertex * 4 * sets] = 1;
+        ++unbound;
+        continue;
       }
       far_off += std::abs(sum - 1) > kWeightTolerance ? 1 : 0;
       for (auto weight = influences.weights.end() - static_cast<std::ptrdiff_t>(4 * sets);
@@ -195,25 +212,32 @@ class PrimitiveReader {
         *weight = static_cast<float>(static_cast<double>(*weight) / sum);
       }
     }
+    if (unbound > 0) {
+      warnings_.push_back(place_ + ": all joint weights of " + std::to_string(unbound) +
+                          " vertices are zero; they follow their first joint");
+    }
     if (far_off > 0) {
-      warnings.push_back(place_ + ": the joint weights of " + std::to_string(far_off) +
-                         " vertices do not sum to 1; they were scaled to do so");
+      warnings_.push_back(place_ + ": the joint weights of " + std::to_string(far_off) +
+                          " vertices do not sum to 1; they were scaled to do so");
     }
   }
 
+  // COLOR_0, with this alpha where there are three components.
+  std::vector<Vec4f> colors(const Attributes& attributes, const std::string& owner, float alpha) const {
+    const auto it = attributes.find("COLOR_0");
+    if (it == attributes.end() || document_.accessors[static_cast<std::size_t>(it->second)].components != 3) {
+      return as_vectors<Vec4f>(floats(attributes, owner, "COLOR_0", 4), 4);
+    }
+    std::vector<Vec4f> colors;
+    for (const Vec3f& rgb : as_vectors<Vec3f>(floats(attributes, owner, "COLOR_0", 3), 3)) {
+      colors.push_back({rgb.x, rgb.y, rgb.z, alpha});
+    }
+    return colors;
+  }
+
   // Colours are clamped to 0..1 (glTF 2.0, 3.7.2.1), since larger ones would reflect more light than arrives.
-  void read_colors(Geometry& geometry, Warnings& warnings) const {
-    const auto index = accessor("COLOR_0");
-    if (!index) {
-      return;
-    }
-    if (document_.accessors[static_cast<std::size_t>(*index)].components != 3) {
-      geometry.colors = vectors<Vec4f>("COLOR_0", 4);
-    } else {
-      for (const Vec3f& rgb : vectors<Vec3f>("COLOR_0", 3)) {
-        geometry.colors.push_back({rgb.x, rgb.y, rgb.z, 1});
-      }
-    }
+  void read_colors(Geometry& geometry) const {
+    geometry.colors = colors(primitive_.attributes, place_ + ".attributes", 1);
     std::size_t outside = 0;
     const auto unit = [](float value) { return value > 0 ? std::min(value, 1.0F) : 0.0F; };
     for (Vec4f& color : geometry.colors) {
@@ -222,12 +246,12 @@ class PrimitiveReader {
       color = clamped;
     }
     if (outside > 0) {
-      warnings.push_back(place_ + ".attributes.COLOR_0: the colours of " + std::to_string(outside) +
-                         " vertices are outside 0..1 and were clamped");
+      warnings_.push_back(place_ + ".attributes.COLOR_0: the colours of " + std::to_string(outside) +
+                          " vertices are outside 0..1 and were clamped");
     }
   }
 
-  std::vector<Triangle> triangles(Warnings& warnings) const {
+  std::vector<Triangle> triangles() const {
     std::vector<std::uint32_t> corners;
     if (primitive_.indices >= 0) {
       const std::string place = place_ + ".indices";
@@ -247,8 +271,8 @@ class PrimitiveReader {
       }
     }
     if (primitive_.mode == kTriangles && corners.size() % 3 != 0) {
-      warnings.push_back(place_ + ": " + std::to_string(corners.size()) +
-                         " corners are not a multiple of 3; the last ones are left out");
+      warnings_.push_back(place_ + ": " + std::to_string(corners.size()) +
+                          " corners are not a multiple of 3; the last ones are left out");
     }
     return assemble(primitive_.mode, corners);
   }
@@ -256,6 +280,7 @@ class PrimitiveReader {
   const GltfDocument& document_;
   const GltfPrimitive& primitive_;
   std::string place_;
+  Warnings& warnings_;
   std::optional<std::size_t> vertex_count_;
 };
 
@@ -284,8 +309,8 @@ OneMesh make_mesh(const GltfDocument& document, std::size_t index, const std::ve
       continue;
     }
     const std::int32_t material = primitive.material >= 0 ? primitive.material : default_material;
-    Geometry geometry = PrimitiveReader(document, primitive, place)
-                            .read(materials[static_cast<std::size_t>(material)], material, with_skin, result.warnings);
+    Geometry geometry = PrimitiveReader(document, primitive, place, result.warnings)
+                            .read(materials[static_cast<std::size_t>(material)], material, with_skin);
     if (!geometry.triangles.empty()) {
       result.mesh.geometries.push_back(std::move(geometry));
     }

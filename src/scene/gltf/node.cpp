@@ -10,6 +10,7 @@
 #include "gazetrace/error.hpp"
 #include "scene/gltf/accessor.hpp"
 #include "scene/gltf/animation.hpp"
+#include "scene/gltf/constants.hpp"
 #include "scene/gltf/skin.hpp"
 
 namespace gazetrace {
@@ -85,8 +86,11 @@ Mesh in_pose(const Mesh& mesh, const MeshPose& pose, const std::vector<Material>
     geometry.positions = std::move(vertices.positions);
     geometry.normals = std::move(vertices.normals);
     geometry.tangents = std::move(vertices.tangents);
-    if (is_mirrored(pose)) {
-      for (auto& triangle : geometry.triangles) {
+    geometry.uv0 = vertices.uv0.empty() ? std::move(geometry.uv0) : std::move(vertices.uv0);
+    geometry.uv1 = vertices.uv1.empty() ? std::move(geometry.uv1) : std::move(vertices.uv1);
+    geometry.colors = vertices.colors.empty() ? std::move(geometry.colors) : std::move(vertices.colors);
+    for (auto& triangle : geometry.triangles) {
+      if (vertices.is_mirrored(triangle)) {
         std::swap(triangle[1], triangle[2]);
       }
     }
@@ -175,7 +179,8 @@ std::vector<WorldNode> world_nodes(const GltfDocument& document, std::vector<int
   const auto add = [&](int index, const WorldNode& parent) {
     const GltfNode& node = document.nodes[static_cast<std::size_t>(index)];
     const Quatd own = node.has_matrix ? rotation_or(node.matrix, Quatd{}) : node.rotation;
-    nodes.push_back({index, parent.to_world * local_transform(node), normalize(parent.rotation * own)});
+    nodes.push_back({index, parent.to_world * local_transform(node), normalize(parent.rotation * own),
+                     parent.hidden || node.hidden});
   };
   for (const int root : document.roots) {
     add(root, WorldNode{});
@@ -203,7 +208,7 @@ PlacedMeshes make_instances(const GltfDocument& document, const std::vector<Worl
   int first_left_out = -1;
   for (const WorldNode& world : nodes) {
     const GltfNode& node = document.nodes[static_cast<std::size_t>(world.node)];
-    if (node.mesh < 0 || meshes[static_cast<std::size_t>(node.mesh)].geometries.empty()) {
+    if (world.hidden || node.mesh < 0 || meshes[static_cast<std::size_t>(node.mesh)].geometries.empty()) {
       continue;
     }
     const bool has_skin = node.skin >= 0;
@@ -233,7 +238,8 @@ PlacedMeshes make_instances(const GltfDocument& document, const std::vector<Worl
     const std::string name = name_of_node(document, world.node);
     const std::string asset = name_of_node(document, outermost[static_cast<std::size_t>(world.node)]);
     for (const Affine& place : places) {
-      const Affine to_world = has_skin ? Affine{} : world.to_world * place;
+      const Affine to_world =
+          has_skin ? Affine{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, shape.about_m} : world.to_world * place;
       if (chain) {
         // Kept whatever its transform is at rest, since the tracer checks the transform at each time.
         placed.instances.push_back(
@@ -267,7 +273,7 @@ std::vector<PunctualLight> make_lights(const GltfDocument& document, const std::
   std::vector<PunctualLight> lights;
   for (const WorldNode& world : nodes) {
     const int index = document.nodes[static_cast<std::size_t>(world.node)].light;
-    if (index < 0) {
+    if (index < 0 || world.hidden) {
       continue;
     }
     const GltfLight& from = document.lights[static_cast<std::size_t>(index)];
@@ -278,7 +284,13 @@ std::vector<PunctualLight> make_lights(const GltfDocument& document, const std::
                                             : LightKind::point;
     // Scale changes neither intensity nor range (KHR_lights_punctual, "Light shared properties").
     light.intensity = to_float(Vec3d{from.color[0], from.color[1], from.color[2]} * from.intensity);
-    light.position_m = to_float(world.to_world.t);
+    const float most = std::max({light.intensity.x, light.intensity.y, light.intensity.z});
+    if (most > kMostLight && is_finite(light.intensity)) {
+      warnings.push_back("light '" + light.name + "': its intensity is above 1e30, which is the most, and was clamped");
+      light.intensity = {std::min(light.intensity.x, kMostLight), std::min(light.intensity.y, kMostLight),
+                         std::min(light.intensity.z, kMostLight)};
+    }
+    light.position_m = world.to_world.t;
     Vec3d direction = normalize(transform_vector(world.to_world, {0, 0, -1}));
     if (!is_finite(direction) || length(direction) == 0) {
       direction = rotate(world.rotation, {0, 0, -1});

@@ -13,6 +13,7 @@ struct WorldNode {
   int node = 0;
   Affine to_world;
   Quatd rotation;  // product of all rotations on the chain, without scales; gives a direction where to_world has none
+  bool hidden = false;  // or a node above it is
 };
 
 // The nodes of the scene at rest, parents before children. It does not recurse, so only memory limits the depth.

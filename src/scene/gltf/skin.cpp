@@ -124,6 +124,29 @@ bool any_moves(const Skeleton& skeleton) {
   });
 }
 
+// Vertices are floats, which are coarse far from the world's origin. There they count from where a joint puts the
+// middle of the mesh; elsewhere from the origin.
+Vec3d point_to_count_from(const Mesh& mesh, const Affine& joint) {
+  constexpr double kFar_m = 100;
+  Vec3d sum;
+  double count = 0;
+  for (const Geometry& geometry : mesh.geometries) {
+    for (const Vec3f& position : geometry.positions) {
+      sum += to_double(position);
+    }
+    count += static_cast<double>(geometry.positions.size());
+  }
+  const Vec3d middle = transform_point(joint, sum / std::max(count, 1.0));
+  return length(middle) > kFar_m && is_finite(middle) ? middle : Vec3d{};
+}
+
+std::vector<Affine> counted_from(const Vec3d& point_m, std::vector<Affine> joints) {
+  for (Affine& joint : joints) {
+    joint.t = joint.t - point_m;
+  }
+  return joints;
+}
+
 }  // namespace
 
 NodeDeformation deformation_of_node(const GltfDocument& document, int node, const std::vector<int>& parents,
@@ -157,6 +180,10 @@ NodeDeformation deformation_of_node(const GltfDocument& document, int node, cons
   }
 
   NodeDeformation result;
+  if (!rest.joints.empty()) {
+    result.about_m = point_to_count_from(mesh, rest.joints.front());
+    rest.joints = counted_from(result.about_m, std::move(rest.joints));
+  }
   if (!moves && !track) {
     const bool is_plain = !skeleton && std::all_of(rest.morph_weights.begin(), rest.morph_weights.end(),
                                                    [](double weight) { return weight == 0; });
@@ -167,11 +194,11 @@ NodeDeformation deformation_of_node(const GltfDocument& document, int node, cons
   }
   const std::int64_t end_ns =
       std::max(skeleton ? last_key_ns(skeleton->nodes) : 0, track ? track->times_ns.back() : std::int64_t{0});
-  result.animated = Deformation{[skeleton, track, rest](std::int64_t t_ns) {
+  result.animated = Deformation{[skeleton, track, rest, about_m = result.about_m](std::int64_t t_ns) {
                                   MeshPose pose;
                                   pose.morph_weights = track ? weights_at(*track, t_ns) : rest.morph_weights;
                                   if (skeleton) {
-                                    pose.joints = joints_at(*skeleton, t_ns);
+                                    pose.joints = counted_from(about_m, joints_at(*skeleton, t_ns));
                                   }
                                   return pose;
                                 },

@@ -15,6 +15,7 @@ namespace gazetrace {
 struct NodeDeformation {
   std::optional<MeshPose> fixed;        // no animation changes it
   std::optional<Deformation> animated;  // over time
+  Vec3d about_m;                        // of a skin: the point of the world from which its vertices count
 };
 
 // `label` names the node in warnings. Missing inverse bind matrices are the identity (glTF 2.0 section 5.28).

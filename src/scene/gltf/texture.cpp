@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chooses the pictures to read, and decodes each of them once.
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "scene/gltf/accessor.hpp"
@@ -27,6 +29,8 @@ std::string image_place(const GltfDocument& document, int image) {
 std::int32_t TextureTable::request(int gltf_texture, TextureUse use, Warnings& warnings) {
   const GltfTexture& texture = document_.textures[static_cast<std::size_t>(gltf_texture)];
   const int picture = texture.source < 0 ? -1 : picture_of_image(texture.source);
+  warnings.insert(warnings.end(), missing_.begin(), missing_.end());
+  missing_.clear();
   if (picture < 0) {
     if (!std::exchange(warned_[gltf_texture], true)) {
       warnings.push_back("textures[" + std::to_string(gltf_texture) +
@@ -59,6 +63,15 @@ int TextureTable::picture_of_image(int image) {
   } else if (!source.uri.empty()) {
     const std::string path =
         resolve_uri(document_.path, document_.data_roots, source.uri, image_place(document_, image));
+    std::error_code unknown;
+    if (!std::filesystem::exists(path, unknown)) {
+      if (!allow_missing_) {
+        throw Error(ErrorKind::input, image_place(document_, image), "there is no picture '" + path + "'",
+                    "bring it there, or give `allow-missing` to show the scene without it");
+      }
+      missing_.push_back(image_place(document_, image) + ": there is no picture '" + path + "'");
+      return picture_by_image_[image] = -1;
+    }
     const auto [it, is_new] = picture_by_path_.try_emplace(path, static_cast<int>(pictures_.size()));
     if (is_new) {
       pictures_.push_back({image, path, {}});

@@ -31,7 +31,7 @@ RayHit hit_of(const Scene& scene, const RenderScene& render_scene, const FirstHi
   hit.distance_m = static_cast<double>(hits.t[k]);
   const Vec3d origin{work.rays.ox[k], work.rays.oy[k], work.rays.oz[k]};
   const Vec3d direction{work.rays.dx[k], work.rays.dy[k], work.rays.dz[k]};
-  hit.position_m = origin + direction * hit.distance_m;
+  hit.position_m = render_scene.origin_m + origin + direction * hit.distance_m;
   return hit;
 }
 

@@ -19,9 +19,6 @@ inline void PathKernel<kLayers>::start(int count) {
     paths.g[i] = 1;
     paths.b[i] = 1;
     paths.pdf[i] = 0;
-    // The samples of a pixel average its textures at full resolution.
-    paths.cone_width[i] = 0;
-    paths.cone_spread[i] = 0;
     work_.radiance.r[i] = 0;
     work_.radiance.g[i] = 0;
     work_.radiance.b[i] = 0;

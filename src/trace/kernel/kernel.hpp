@@ -36,6 +36,7 @@ FrameContext make_frame_context(const Scene& scene, const RenderScene& render_sc
 
 struct KernelCounts {
   std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0, rejected = 0;
+  std::uint64_t backs = 0;  // camera rays that hit the back of a face whose material is not double-sided
 };
 
 // Traces the first `count` entries of workspace.samples into workspace.radiance (and guides).

@@ -60,9 +60,8 @@ struct BatchVec3 {
 // Packed like the rays that belong to the paths.
 struct PathBatch {
   BatchArray<std::uint32_t> slot;
-  BatchArray<float> r, g, b;  // throughput
-  BatchArray<float> pdf;      // density of the ray's direction, over solid angle
-  BatchArray<float> cone_width, cone_spread;
+  BatchArray<float> r, g, b;        // throughput
+  BatchArray<float> pdf;            // density of the ray's direction, over solid angle
   BatchVec3 lit_point, lit_normal;  // arguments of the last light choice; only where LightSampler::depends_on_place
   BatchArray<std::uint32_t> body;   // the body that the ray is in: index into LayeredMaterials::materials, or kNoId
 };

@@ -50,7 +50,8 @@ class PathKernel {
       }
       const RayShape shape = vertex == 0 && !frame_.single_rays ? RayShape::coherent_packet : RayShape::single;
       record(rays, alive, shape, false);
-      counts_.rejected += static_cast<std::uint64_t>(frame_.scene->rays->intersect(rays, alive, shape, work_.hits));
+      counts_.rejected +=
+          static_cast<std::uint64_t>(frame_.scene->rays->intersect(rays, alive, shape, work_.hits, vertex == 0));
       shadow_count_ = 0;
       const std::size_t first_bounce = work_.bounces.size();
       alive = shade(vertex, alive);

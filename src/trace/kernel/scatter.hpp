@@ -165,9 +165,6 @@ inline void PathKernel<kLayers>::take_bsdf_sample(int vertex, std::size_t i, con
     state.lit_point.set(n, chunk.lit_point.get(i));
     state.lit_normal.set(n, chunk.lit_normal.get(i));
   }
-  state.cone_width[n] = chunk.cone_width[i];
-  state.cone_spread[n] = chunk.cone_spread[i] + static_cast<float>(frame_.settings.bounce_cone_rad) /
-                                                    std::sqrt(static_cast<float>(kPi) * chunk.next_pdf[i]);
 }
 
 }  // namespace gazetrace

@@ -53,8 +53,9 @@ inline void PathKernel<kLayers>::shade_chunk(int vertex, const RayBatch& rays, c
     chunk.u[i] = work_.hits.u[k];
     chunk.v[i] = work_.hits.v[k];
     chunk.t[i] = work_.hits.t[k];
-    chunk.cone_width[i] = paths.cone_width[k];
-    chunk.cone_spread[i] = paths.cone_spread[k];
+    // The samples of a pixel average textures at full resolution, after a bounce, too: coarser levels there bias the
+    // mean, and were measured to save neither time nor noise.
+    chunk.cone_width[i] = chunk.cone_spread[i] = 0;
   }
   gather_triangles(scene, rays.time, chunk, count);
   place_hits(chunk, count);
@@ -90,6 +91,7 @@ inline bool PathKernel<kLayers>::goes_on(int vertex, std::size_t i, const PathBa
   }
   const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
   const ShadingMaterial& material = frame_.scene->materials[chunk.material[i]];
+  counts_.backs += vertex == 0 && chunk.side[i] < 0 && !material.double_sided ? 1 : 0;
   if (material.unlit) {
     add(slot, clamped(vertex, throughput * chunk.base_color.get(i)), vertex);
     return false;

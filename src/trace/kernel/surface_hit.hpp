@@ -101,10 +101,10 @@ GAZETRACE_CLONES inline void gather_triangles(const RenderScene& scene, const Ba
       tangent_code[c][i] = triangle.tangent[c];
     }
     chunk.lod[i] = triangle.lod;
-    chunk.material[i] = triangle.material_and_sign >> 1U;
-    chunk.bitangent_sign[i] = (triangle.material_and_sign & 1U) != 0 ? -1.0F : 1.0F;
+    chunk.material[i] = triangle.material();
+    chunk.bitangent_sign[i] = triangle.bitangent_sign();
     chunk.extra[i] = triangle.extra;
-    chunk.winding[i] = 1;
+    chunk.winding[i] = triangle.winding();
     chunk.instance_reach[i] = 0;
   }
   const std::size_t padded = std::min((count + kLanes - 1) / kLanes * kLanes, kChunk);
@@ -135,7 +135,7 @@ GAZETRACE_CLONES inline void gather_triangles(const RenderScene& scene, const Ba
                       absolute(instance.axes[2]) * reach.z + absolute(instance.translation);
     // Twice the rounding errors, since the ray is transformed to the mesh's space and back.
     chunk.instance_reach[i] = 2 * largest(far);
-    chunk.winding[i] = instance.flip;
+    chunk.winding[i] *= instance.flip;
     chunk.bitangent_sign[i] *= instance.flip;
     chunk.lod[i] += instance.lod_offset;
   };

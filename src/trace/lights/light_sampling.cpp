@@ -14,6 +14,7 @@
 #include "trace/kernel/shading_frame.hpp"
 #include "trace/lights/duplicate_emitters.hpp"
 #include "trace/lights/emission_average.hpp"
+#include "trace/scene/instance_transform.hpp"
 
 namespace gazetrace {
 namespace {
@@ -41,38 +42,9 @@ bool usable(double weight) {
 
 // The radius of the sphere about the scene's bounding box, in metres; 1 for an empty scene.
 double scene_radius_m(const Scene& scene) {
-  constexpr double kHuge = std::numeric_limits<double>::max();
-  Vec3d low{kHuge, kHuge, kHuge};
-  Vec3d high{-kHuge, -kHuge, -kHuge};
-  struct Box {
-    Vec3d low, high;
-    bool empty = true;
-  };
-  std::vector<Box> boxes;
-  for (const Mesh& mesh : scene.meshes) {
-    Box box{low, high};
-    for (const Geometry& geometry : mesh.geometries) {
-      for (const Vec3f& p : geometry.positions) {
-        box.low = {std::min<double>(box.low.x, p.x), std::min<double>(box.low.y, p.y),
-                   std::min<double>(box.low.z, p.z)};
-        box.high = {std::max<double>(box.high.x, p.x), std::max<double>(box.high.y, p.y),
-                    std::max<double>(box.high.z, p.z)};
-        box.empty = false;
-      }
-    }
-    boxes.push_back(box);
-  }
-  for (const Instance& instance : scene.instances) {
-    const Box& box = boxes[static_cast<std::size_t>(instance.mesh)];
-    for (unsigned corner = 0; corner < 8 && !box.empty; ++corner) {
-      const Vec3d p = transform_point(
-          instance.to_world, {(corner & 1U) != 0 ? box.high.x : box.low.x, (corner & 2U) != 0 ? box.high.y : box.low.y,
-                              (corner & 4U) != 0 ? box.high.z : box.low.z});
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-  }
-  const double radius = low.x <= high.x ? 0.5 * length(high - low) : 1.0;
+  const SceneSummary summary = summarize(scene);
+  const double radius =
+      summary.bounds_min.x <= summary.bounds_max.x ? 0.5 * length(summary.bounds_max - summary.bounds_min) : 1.0;
   return usable(radius) ? radius : 1.0;
 }
 
@@ -131,9 +103,10 @@ double area_of(const EmissiveTriangle& triangle) {
 
 }  // namespace
 
-LightSampler::LightSampler(const Scene& scene, LightChoice choice) : environment_(scene.environment) {
+LightSampler::LightSampler(const Scene& scene, LightChoice choice, const Vec3d& origin_m)
+    : environment_(scene.environment) {
   const double radius = scene_radius_m(scene);
-  auto [triangle_powers, places] = collect_triangles(scene);
+  auto [triangle_powers, places] = collect_triangles(scene, origin_m);
   first_of_duplicates_ = first_of_duplicates(places);
   for (std::size_t i = 0; i < first_of_duplicates_.size(); ++i) {
     if (first_of_duplicates_[i] != i) {
@@ -145,6 +118,7 @@ LightSampler::LightSampler(const Scene& scene, LightChoice choice) : environment
     if (const double p = power(light, radius); usable(p)) {
       punctual_.push_back(light);
       punctual_.back().direction = normalize(light.direction);
+      punctual_.back().position_m = light.position_m - origin_m;
       punctual_powers.push_back(p);
     }
   }
@@ -212,7 +186,7 @@ void LightSampler::build_tree(const std::vector<double>& triangle_powers) {
   }
   for (const PunctualLight& light : punctual_) {
     LightBounds bounds;
-    bounds.low = bounds.high = to_double(light.position_m);
+    bounds.low = bounds.high = light.position_m;
     bounds.intensity = is_local(light) ? luminance(to_double(light.intensity)) : 0;
     bounds.normals_rad = kPi;
     if (light.kind == LightKind::spot) {
@@ -229,13 +203,14 @@ void LightSampler::build_tree(const std::vector<double>& triangle_powers) {
 }
 
 // Fills in triangles_ and the indices into it.
-LightSampler::Collected LightSampler::collect_triangles(const Scene& scene) {
+LightSampler::Collected LightSampler::collect_triangles(const Scene& scene, const Vec3d& origin_m) {
   Collected found;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
     first_geometry_.push_back(static_cast<std::uint32_t>(first_emitter_.size()));
-    const double side = determinant(instance.to_world) < 0 ? -1.0 : 1.0;  // a mirrored one has the opposite winding
+    const Affine to_world = counted_from(origin_m, instance.to_world);
+    const double side = determinant(to_world) < 0 ? -1.0 : 1.0;  // a mirrored one has the opposite winding
     for (std::size_t g = 0; g < mesh.geometries.size(); ++g) {
       const Geometry& geometry = mesh.geometries[g];
       const Material& material = scene.materials[static_cast<std::size_t>(geometry.material)];
@@ -248,7 +223,7 @@ LightSampler::Collected LightSampler::collect_triangles(const Scene& scene) {
       first_emitter_.push_back(static_cast<std::uint32_t>(triangles_.size()));
       for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
         const auto corner = [&](std::size_t k) {
-          return transform_point(instance.to_world, to_double(geometry.positions[geometry.triangles[t][k]]));
+          return transform_point(to_world, to_double(geometry.positions[geometry.triangles[t][k]]));
         };
         const std::array<Vec3d, 3> corners{corner(0), corner(1), corner(2)};
         EmissiveTriangle triangle;
@@ -403,7 +378,7 @@ LightSample LightSampler::sample_punctual(std::uint32_t index, float probability
     result.distance = std::numeric_limits<float>::infinity();
     result.radiance = light.intensity;
   } else {
-    const Vec3f way = light.position_m - position;
+    const Vec3f way = to_float(light.position_m) - position;
     const float distance_squared = dot(way, way);
     if (!(distance_squared > 0)) {
       return result;

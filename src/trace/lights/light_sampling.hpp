@@ -55,7 +55,8 @@ struct EmissiveTriangle {
 class LightSampler {
  public:
   // Keeps a reference to the scene's environment picture, which must outlive it.
-  explicit LightSampler(const Scene& scene, LightChoice choice = LightChoice::automatic);
+  // Its coordinates count from `origin_m`.
+  explicit LightSampler(const Scene& scene, LightChoice choice = LightChoice::automatic, const Vec3d& origin_m = {});
 
   // False where sample() never returns a valid sample.
   [[nodiscard]] bool any() const noexcept {
@@ -120,7 +121,7 @@ class LightSampler {
     std::vector<double> powers;  // in watts; 0 for lights that are never chosen
     std::vector<EmitterPlace> places;
   };
-  Collected collect_triangles(const Scene& scene);
+  Collected collect_triangles(const Scene& scene, const Vec3d& origin_m);
   void build_tree(const std::vector<double>& triangle_powers);
 
   EnvironmentSampler environment_;

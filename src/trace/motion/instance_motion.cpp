@@ -14,16 +14,19 @@ constexpr int kSteps = 16;
 
 // The transforms at all steps; a single one where the instance stands still, and none where the ray library cannot take
 // one of them.
-std::vector<Affine> way_of(const Scene& scene, const Instance& instance, const std::optional<ShutterTimes>& at) {
+std::vector<Affine> way_of(const Scene& scene, const Instance& instance, const Vec3d& origin_m,
+                           const std::optional<ShutterTimes>& at) {
   if (!at) {
-    return can_be_instanced(instance.to_world) ? std::vector<Affine>{instance.to_world} : std::vector<Affine>{};
+    const Affine place = counted_from(origin_m, instance.to_world);
+    return can_be_instanced(place) ? std::vector<Affine>{place} : std::vector<Affine>{};
   }
   const Motion& motion = scene.motions[static_cast<std::size_t>(instance.motion)];
   const ShutterTimes& times = *at;
   std::vector<Affine> way;
   const int steps = times.close_ns > times.open_ns ? kSteps : 0;
   for (int i = 0; i <= steps; ++i) {
-    way.push_back(motion.to_world_at(times.open_ns + (times.close_ns - times.open_ns) * i / std::max(steps, 1)));
+    const std::int64_t t_ns = times.open_ns + (times.close_ns - times.open_ns) * i / std::max(steps, 1);
+    way.push_back(counted_from(origin_m, motion.to_world_at(t_ns)));
     if (!can_be_instanced(way.back())) {
       return {};
     }
@@ -44,7 +47,7 @@ void RenderScene::move_to(const Scene& scene, const std::optional<ShutterTimes>&
   ways.clear();
   for (const MovingInstance& moving : moving_) {
     const Instance& source = scene.instances[moving.scene_instance];
-    const std::vector<Affine> places = way_of(scene, source, times);
+    const std::vector<Affine> places = way_of(scene, source, origin_m, times);
     InstanceWay way;
     std::transform(places.begin(), places.end(), std::back_inserter(way), ray_transform);
     rays->place_instance(first_instance_id + moving.instance, way);

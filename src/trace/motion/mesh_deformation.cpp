@@ -160,9 +160,6 @@ void RenderScene::deform_meshes(const Scene& scene, const std::optional<ShutterT
     const Instance& source = scene.instances[deforming.scene_instance];
     ShadingInstance& instance = instances[deforming.instance];
     std::vector<MeshPose> poses = poses_of(scene.deformations[static_cast<std::size_t>(source.deformation)], times);
-    if (!poses.front().joints.empty()) {
-      instance.flip = is_mirrored(poses.front()) ? -1.0F : 1.0F;
-    }
     if (poses == deforming.poses) {
       continue;
     }
@@ -181,7 +178,11 @@ void RenderScene::deform_meshes(const Scene& scene, const std::optional<ShutterT
         const std::size_t key = (k + shapes.size() / 2 + 1) % shapes.size();
         const DeformedVertices& now = shapes[key][g];
         check_positions(now.positions, scene, mesh_index, record.scene_geometry);
-        const SurfaceVertices vertices{now.positions, now.normals, now.tangents};
+        const SurfaceVertices vertices{now.positions, now.normals, now.tangents, nullptr, &now};
+        const auto repaints = [](const MorphTarget& target) {
+          return !(target.uv0.empty() && target.uv1.empty() && target.colors.empty());
+        };
+        const bool painted = std::any_of(geometry.morph_targets.begin(), geometry.morph_targets.end(), repaints);
         const std::size_t count = geometry.triangles.size();
         if (blurs_here) {
           way.keys[key].resize(way.keys[key].size() + count);
@@ -189,6 +190,9 @@ void RenderScene::deform_meshes(const Scene& scene, const std::optional<ShutterT
         parallel_for((count + kBlock - 1) / kBlock, threads_, [&](std::size_t block) {
           for (std::size_t t = block * kBlock; t < std::min(count, (block + 1) * kBlock); ++t) {
             ShadingTriangle& triangle = triangles[record.first_triangle + t];
+            if (painted) {
+              paint_triangle(scene, geometry, &now, geometry.triangles[t], triangle);
+            }
             shape_triangle(vertices, geometry.triangles[t], triangle);
             if (blurs_here) {
               way.keys[key][record.first_triangle + t - way.first_triangle] = {triangle.position, triangle.normal,

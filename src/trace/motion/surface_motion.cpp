@@ -41,7 +41,8 @@ InstancePoses poses_of(const Scene& scene, const RenderScene& render_scene, cons
                to_double(instance.translation)};
   poses.then = poses.now;
   if (source.motion >= 0) {
-    const Affine to_world = scene.motions[static_cast<std::size_t>(source.motion)].to_world_at(t_ns);
+    const Affine to_world =
+        counted_from(render_scene.origin_m, scene.motions[static_cast<std::size_t>(source.motion)].to_world_at(t_ns));
     // Compared in the precision of rays, so that what stands still does so exactly.
     poses.moved = ray_transform(to_world) != ray_transform(poses.now);
     poses.then = poses.moved ? to_world : poses.now;
@@ -76,7 +77,9 @@ class HitFollower {
  public:
   HitFollower(const Scene& scene, const RenderScene& render_scene, const OtherView& other, int width_px, int height_px,
               bool with_shapes, int threads)
-      : scene_(scene), render_scene_(render_scene), view_(other.camera, width_px, height_px) {
+      : scene_(scene),
+        render_scene_(render_scene),
+        view_(counted_from(render_scene.origin_m, other.camera), width_px, height_px) {
     for (const ShadingInstance& instance : render_scene.instances) {
       poses_.push_back(poses_of(scene, render_scene, instance, other.t_video_ns, with_shapes, threads));
     }
@@ -86,7 +89,8 @@ class HitFollower {
   // Whether what was hit is where it is in the pose of the tracer.
   [[nodiscard]] bool stays(const PixelHit& hit) const { return hit.instance == kNoId || !poses_[hit.instance].moved; }
 
-  // The corners of the triangle in world space, in double: in the pose of the tracer, and at the other time.
+  // The corners of the triangle in the coordinates of the tracer, in double: in the pose of the tracer, and at the
+  // other time.
   [[nodiscard]] Corners corners_of(const PixelHit& hit) const {
     const GeometryRecord& record = render_scene_.geometries[hit.geometry];
     const InstancePoses* poses = hit.instance == kNoId ? nullptr : &poses_[hit.instance];
@@ -143,7 +147,7 @@ std::uint32_t object_of(const RenderScene& scene, const PixelHit& hit) {
 
 bool mirrors(const RenderScene& scene, const PixelHit& hit) {
   const ShadingTriangle& triangle = scene.triangles[scene.geometries[hit.geometry].first_triangle + hit.primitive];
-  const std::uint32_t material = triangle.material_and_sign >> 1U;
+  const std::uint32_t material = triangle.material();
   const LayeredMaterial* layers = scene.layered.of(material);
   return scene.materials[material].roughness < kMirrorRoughness || (layers != nullptr && layers->layers.transmission);
 }
@@ -179,6 +183,7 @@ struct Workspace {
 };
 
 void trace_tile(const RenderScene& scene, const CameraRays& rays, int x0, int y0, Workspace& work, PixelHits& out) {
+  const Vec3d eye_m = out.view.camera.pose.position_m - scene.origin_m;
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < kBatchSize; ++i) {
     const auto [dx, dy] = place_on_curve(i);
@@ -209,8 +214,8 @@ void trace_tile(const RenderScene& scene, const CameraRays& rays, int x0, int y0
     if (!out.hits.empty()) {
       out.hits.pixels[work.pixel[k]] = hit;
     }
-    out.sights.pixels[work.pixel[k]] = {to_float(point_of(scene, hit) - out.view.camera.pose.position_m),
-                                        object_of(scene, hit), true, mirrors(scene, hit)};
+    out.sights.pixels[work.pixel[k]] = {to_float(point_of(scene, hit) - eye_m), object_of(scene, hit), true,
+                                        mirrors(scene, hit)};
   }
 }
 
@@ -233,7 +238,7 @@ PixelHits trace_pixel_hits(const RenderScene& scene, const OtherView& view, int 
   if (with_triangles) {
     out.hits = Image<PixelHit>(width_px, height_px, {kNoId, kNoId, 0, 0, 0});
   }
-  const CameraRays rays(view.camera, height_px);
+  const CameraRays rays(counted_from(scene.origin_m, view.camera), height_px);
   const int rows = (height_px + kTilePx - 1) / kTilePx;
   parallel_for(static_cast<std::size_t>(rows), threads, [&](std::size_t row) {
     const FlushDenormals flush;
@@ -246,6 +251,7 @@ PixelHits trace_pixel_hits(const RenderScene& scene, const OtherView& view, int 
 }
 
 struct HitPlaces::Impl {
+  std::shared_ptr<const RenderScene> scene;
   const PixelHits& seen;
   OtherView other;
   HitFollower then, before;  // at the other time, and when the pixels saw it
@@ -268,27 +274,28 @@ HitPlace HitPlaces::at(std::size_t pixel) const {
                            seen.sights.height_px);
     return out;
   }
-  const Vec3d before = seen.view.camera.pose.position_m + to_double(sight.position_m);
+  const Vec3d& origin_m = impl_->scene->origin_m;
+  const Vec3d before = seen.view.camera.pose.position_m - origin_m + to_double(sight.position_m);
   const PixelHit* const hit = impl_->moves ? &seen.hits.pixels[pixel] : nullptr;
   const bool still = hit == nullptr || (impl_->then.stays(*hit) && impl_->before.stays(*hit));
   const Vec3d then = still ? before : point_on(impl_->then.corners_of(*hit).then, *hit);
   out.object = sight.object;
   out.mirrors = sight.mirrors;
   out.px = still && impl_->same ? center_of(pixel, seen.sights.width_px) : impl_->then.view().point(then).px;
-  out.position_m = to_float(then - other.camera.pose.position_m);
+  out.position_m = to_float(then - (other.camera.pose.position_m - origin_m));
   out.moved_m = to_float(then - before);
   return out;
 }
 
-HitPlaces places_of_hits(const Scene& scene, const RenderScene& render_scene, const PixelHits& seen,
-                         const OtherView& other, int threads) {
+HitPlaces places_of_hits(const Scene& scene, const std::shared_ptr<const RenderScene>& render_scene,
+                         const PixelHits& seen, const OtherView& other, int threads) {
   const int width_px = seen.sights.width_px;
   const int height_px = seen.sights.height_px;
-  return HitPlaces(std::unique_ptr<const HitPlaces::Impl>(
-      new HitPlaces::Impl{seen, other, HitFollower(scene, render_scene, other, width_px, height_px, true, threads),
-                          HitFollower(scene, render_scene, seen.view, width_px, height_px, false, threads),
-                          CameraRays(seen.view.camera, height_px), same_view(seen.view.camera, other.camera),
-                          !seen.hits.empty() && seen.view.t_video_ns != other.t_video_ns}));
+  return HitPlaces(std::unique_ptr<const HitPlaces::Impl>(new HitPlaces::Impl{
+      render_scene, seen, other, HitFollower(scene, *render_scene, other, width_px, height_px, true, threads),
+      HitFollower(scene, *render_scene, seen.view, width_px, height_px, false, threads),
+      CameraRays(seen.view.camera, height_px), same_view(seen.view.camera, other.camera),
+      !seen.hits.empty() && seen.view.t_video_ns != other.t_video_ns}));
 }
 
 SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render_scene, const Camera& camera,
@@ -302,8 +309,9 @@ SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render
   out.other_depth_m = ImageGray(width_px, height_px, kFar);
   const PixelHits seen = trace_pixel_hits(render_scene, {camera, other.t_video_ns}, width_px, height_px, true, threads);
   const HitFollower follower(scene, render_scene, other, width_px, height_px, true, threads);
-  const CameraRays rays(camera, height_px);
-  const PixelProjection view(camera, width_px, height_px);
+  const Camera here = counted_from(render_scene.origin_m, camera);
+  const CameraRays rays(here, height_px);
+  const PixelProjection view(here, width_px, height_px);
   const bool same = same_view(camera, other.camera);
   for_each_pixel_of(width_px, height_px, threads, [&](std::size_t pixel) {
     const PixelHit& hit = seen.hits.pixels[pixel];
@@ -317,7 +325,7 @@ SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render
     const PixelProjection::Place place = follower.view().point(then);
     out.object.pixels[pixel] = seen.sights.pixels[pixel].object;
     out.depth_m.pixels[pixel] = static_cast<float>(view.point(now).depth_m);
-    out.position_m.pixels[pixel] = to_float(now);
+    out.position_m.pixels[pixel] = to_float(render_scene.origin_m + now);
     out.other_px.pixels[pixel] = same && follower.stays(hit) ? center_of(pixel, width_px) : place.px;
     out.other_depth_m.pixels[pixel] = static_cast<float>(place.depth_m);
   });

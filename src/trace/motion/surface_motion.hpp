@@ -14,8 +14,8 @@ PixelHits trace_pixel_hits(const RenderScene& scene, const OtherView& view, int 
                            bool with_triangles, int threads);
 
 // `render_scene` may be in any pose.
-HitPlaces places_of_hits(const Scene& scene, const RenderScene& render_scene, const PixelHits& seen,
-                         const OtherView& other, int threads);
+HitPlaces places_of_hits(const Scene& scene, const std::shared_ptr<const RenderScene>& render_scene,
+                         const PixelHits& seen, const OtherView& other, int threads);
 
 SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render_scene, const Camera& camera,
                                    int width_px, int height_px, const OtherView& other, int threads);

@@ -18,6 +18,14 @@ Vec2f concentric_disk(const Vec2f& u) {
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
+Camera counted_from(const Vec3d& origin_m, Camera camera) {
+  camera.pose.position_m = camera.pose.position_m - origin_m;
+  for (CameraPose& pose : camera.shutter_poses) {
+    pose.position_m = pose.position_m - origin_m;
+  }
+  return camera;
+}
+
 CameraRays::CameraRays(const Camera& camera, int height_px)
     : perspective_(camera.projection.kind == ProjectionKind::perspective),
       middle_px_{static_cast<float>(camera.middle_px.x), static_cast<float>(camera.middle_px.y)},

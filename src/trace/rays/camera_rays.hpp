@@ -16,6 +16,9 @@ namespace gazetrace {
 // (Shirley and Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997).
 Vec2f concentric_disk(const Vec2f& u);
 
+// The camera in a world whose coordinates count from `origin_m`.
+Camera counted_from(const Vec3d& origin_m, Camera camera);
+
 // Pixel coordinates count from the frame's centre, so that sub-pixel digits of 16K frames are kept in float.
 class CameraRays {
  public:

@@ -27,6 +27,14 @@ void alpha_filter(const RTCFilterFunctionNArguments* arguments) {
       continue;
     }
     const std::uint32_t primitive = RTCHitN_primID(arguments->hit, n, i);
+    // Of an instanced mesh, the ray is in the mesh's own space here, where no transform turns a winding round.
+    if (query->of_camera &&
+        query->alpha->culled(tag, primitive,
+                             {RTCRayN_dir_x(arguments->ray, n, i), RTCRayN_dir_y(arguments->ray, n, i),
+                              RTCRayN_dir_z(arguments->ray, n, i)})) {
+      arguments->valid[i] = 0;
+      continue;
+    }
     const std::uint32_t key = query->keys[RTCRayN_id(arguments->ray, n, i)];
     const std::uint32_t geometry = RTCHitN_geomID(arguments->hit, n, i);
     const std::uint32_t instance = RTCHitN_instID(arguments->hit, n, i, 0);
@@ -72,7 +80,7 @@ void RayScene::Impl::attach(RTCScene scene, const RayGeometry& source, std::uint
   if (vertices != nullptr && indices != nullptr) {
     std::memcpy(vertices, source.positions.data(), source.positions.size() * sizeof(Vec3f));
     std::memcpy(indices, source.triangles.data(), source.triangles.size() * sizeof(source.triangles[0]));
-    if (source.alpha) {
+    if (source.ask) {
       rtcSetGeometryUserData(geometry, reinterpret_cast<void*>(static_cast<std::uintptr_t>(source.tag)));
       rtcSetGeometryIntersectFilterFunction(geometry, alpha_filter);
       rtcSetGeometryOccludedFilterFunction(geometry, alpha_filter);

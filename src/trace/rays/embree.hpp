@@ -23,12 +23,14 @@ struct AlphaSource {
   // True where the surface lets the ray pass. `key` is different for every (ray, instance, primitive).
   [[nodiscard]] virtual bool transparent(std::uint32_t tag, std::uint32_t primitive, float u, float v,
                                          std::uint32_t key) const = 0;
+  // True where a camera ray of this direction, in the space of the triangle's corners, passes the triangle's back.
+  [[nodiscard]] virtual bool culled(std::uint32_t tag, std::uint32_t primitive, const Vec3f& direction) const = 0;
 };
 
 struct RayGeometry {
   std::vector<Vec3f> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  bool alpha = false;  // call the AlphaSource at every candidate hit
+  bool ask = false;  // the AlphaSource at every candidate hit
   std::uint32_t tag = 0;
 };
 
@@ -69,9 +71,9 @@ class RayScene {
   // `timed`: the rays have a time.
   void commit(bool timed = false);
 
-  // Intersects rays [0, count). A rejected ray gets geometry == kRejected and is otherwise a miss. Returns the number
-  // of rejected rays.
-  int intersect(const RayBatch& rays, int count, RayShape shape, HitBatch& hits) const;
+  // Intersects rays [0, count), which come from the camera or from elsewhere. A rejected ray gets geometry == kRejected
+  // and is otherwise a miss. Returns the number of rejected rays.
+  int intersect(const RayBatch& rays, int count, RayShape shape, HitBatch& hits, bool of_camera = true) const;
   // Sets occluded[i] to 0 or 1, or to 2 for a rejected ray. Returns the number of rejected rays.
   int occluded(const RayBatch& rays, int count, RayShape shape, std::uint8_t* occluded) const;
 

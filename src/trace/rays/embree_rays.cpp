@@ -14,14 +14,14 @@ constexpr float kOccluded = -std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-int RayScene::intersect(const RayBatch& rays, int count, RayShape shape, HitBatch& hits) const {
-  return impl_->timed ? impl_->intersect<true>(rays, count, shape, hits)
-                      : impl_->intersect<false>(rays, count, shape, hits);
+int RayScene::intersect(const RayBatch& rays, int count, RayShape shape, HitBatch& hits, bool of_camera) const {
+  return impl_->timed ? impl_->intersect<true>(rays, count, shape, hits, of_camera)
+                      : impl_->intersect<false>(rays, count, shape, hits, of_camera);
 }
 
 template <bool kTimed>
-int RayScene::Impl::intersect(const RayBatch& rays, int count, RayShape shape, HitBatch& hits) const {
-  Query query(alpha, rays.alpha_key.data, shape == RayShape::coherent_packet ? kCoherent : kIncoherent);
+int RayScene::Impl::intersect(const RayBatch& rays, int count, RayShape shape, HitBatch& hits, bool of_camera) const {
+  Query query(alpha, rays.alpha_key.data, shape == RayShape::coherent_packet ? kCoherent : kIncoherent, of_camera);
   int refused = 0;
   if (shape == RayShape::single) {
     for (int i = 0; i < count; ++i) {

@@ -35,13 +35,14 @@ struct Query {
   LibraryContext context;
   const AlphaSource* alpha = nullptr;
   const std::uint32_t* keys = nullptr;  // indexed by ray id
+  bool of_camera = false;
 #if GAZETRACE_EMBREE_MAJOR >= 4
   RTCIntersectArguments intersect_arguments;
   RTCOccludedArguments occluded_arguments;
 #endif
 
-  Query(const AlphaSource* source, const std::uint32_t* alpha_keys, ContextFlags flags)
-      : alpha(source), keys(alpha_keys) {
+  Query(const AlphaSource* source, const std::uint32_t* alpha_keys, ContextFlags flags, bool from_camera = false)
+      : alpha(source), keys(alpha_keys), of_camera(from_camera) {
 #if GAZETRACE_EMBREE_MAJOR >= 4
     rtcInitRayQueryContext(&context);
     rtcInitIntersectArguments(&intersect_arguments);
@@ -163,7 +164,7 @@ struct RayScene::Impl {
   std::uint32_t next_id = 0;
 
   template <bool kTimed>
-  int intersect(const RayBatch& rays, int count, RayShape shape, HitBatch& hits) const;
+  int intersect(const RayBatch& rays, int count, RayShape shape, HitBatch& hits, bool of_camera) const;
   template <bool kTimed>
   int occluded(const RayBatch& rays, int count, RayShape shape, std::uint8_t* occluded) const;
 

@@ -92,6 +92,11 @@ SummedRange SiteSummer::finish() {
 }
 
 void SiteSummer::finish_site() {
+  if (!is_finite(to_float(sum_.light.radiance))) {  // of samples that are, each by itself
+    range_.non_finite += sum_.light.count;
+    sum_.light.radiance = sum_.light.first_half = {};
+    sum_.groups = {};
+  }
   out_.sum[site_] = to_float(sum_.light.radiance);
   out_.sum_square_luminance[site_] = static_cast<float>(std::min(sum_.light.square_luminance, kMostSquare));
   out_.count[site_] = sum_.light.count;

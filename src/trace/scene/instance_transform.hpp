@@ -10,6 +10,11 @@
 
 namespace gazetrace {
 
+// What leads into a world whose coordinates count from `origin_m`.
+inline Affine counted_from(const Vec3d& origin_m, const Affine& to_world) {
+  return {to_world.x, to_world.y, to_world.z, to_world.t - origin_m};
+}
+
 // The cofactor matrix, which transforms normals for any invertible map; for mirroring ones with the sign of the
 // determinant.
 inline std::array<Vec3d, 3> cofactors(const Affine& a) {

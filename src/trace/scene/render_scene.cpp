@@ -12,11 +12,22 @@
 namespace gazetrace {
 namespace {
 
-Vec2f transformed_uv(const TextureRef* ref, const Geometry& geometry, std::uint32_t vertex) {
+// What is painted on a geometry, in the shape that it has now; nullptr: as it is stored.
+struct Paint {
+  Paint(const Geometry& geometry, const DeformedVertices* shape)
+      : uv0(shape != nullptr && !shape->uv0.empty() ? shape->uv0 : geometry.uv0),
+        uv1(shape != nullptr && !shape->uv1.empty() ? shape->uv1 : geometry.uv1),
+        colors(shape != nullptr && !shape->colors.empty() ? shape->colors : geometry.colors) {}
+  const std::vector<Vec2f>& uv0;
+  const std::vector<Vec2f>& uv1;
+  const std::vector<Vec4f>& colors;
+};
+
+Vec2f transformed_uv(const TextureRef* ref, const Paint& paint, std::uint32_t vertex) {
   if (ref == nullptr) {
     return {};
   }
-  const std::vector<Vec2f>& set = ref->uv_set == 1 ? geometry.uv1 : geometry.uv0;
+  const std::vector<Vec2f>& set = ref->uv_set == 1 ? paint.uv1 : paint.uv0;
   const Vec2f uv = vertex < set.size() ? set[vertex] : Vec2f{};
   if (!ref->has_transform) {
     return uv;
@@ -93,21 +104,25 @@ RayGeometry placed(const Geometry& geometry, const DeformedVertices* shape, cons
   return out;
 }
 
-TriangleExtra extra_of(const Geometry& geometry, const std::array<std::uint32_t, 3>& corner) {
+TriangleExtra extra_of(const Paint& paint, const std::array<std::uint32_t, 3>& corner) {
   TriangleExtra extra;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t vertex = corner[k];
-    extra.uv0[k] = vertex < geometry.uv0.size() ? geometry.uv0[vertex] : Vec2f{};
-    extra.uv1[k] = vertex < geometry.uv1.size() ? geometry.uv1[vertex] : Vec2f{};
-    extra.color[k] = vertex < geometry.colors.size() ? geometry.colors[vertex] : Vec4f{1, 1, 1, 1};
+    extra.uv0[k] = vertex < paint.uv0.size() ? paint.uv0[vertex] : Vec2f{};
+    extra.uv1[k] = vertex < paint.uv1.size() ? paint.uv1[vertex] : Vec2f{};
+    extra.color[k] = vertex < paint.colors.size() ? paint.colors[vertex] : Vec4f{1, 1, 1, 1};
   }
   return extra;
 }
 
 }  // namespace
 
-RenderScene::RenderScene(const Scene& scene, const TracerOptions& options)
-    : materials(make_materials(scene)), layered(make_layered_materials(scene)), features(features_of(scene)) {
+RenderScene::RenderScene(const Scene& scene, const TracerOptions& options, const Vec3d& origin)
+    : origin_m(origin),
+      materials(make_materials(scene)),
+      layered(make_layered_materials(scene)),
+      features(features_of(scene)),
+      culls_(scene.cull_back_faces) {
   const Stopwatch watch;
   const AlphaSource* alpha = this;
   rays = std::make_unique<RayScene>(options.threads, alpha);
@@ -177,15 +192,13 @@ void RenderScene::add_instance(const Scene& scene, std::size_t scene_instance, I
                                const TracerOptions& options) {
   const Instance& source = scene.instances[scene_instance];
   // A motion may begin with any transform; an instance that the ray library cannot handle is hidden until it can.
-  const bool usable = can_be_instanced(source.to_world);
-  const Affine to_world = usable ? source.to_world : Affine{};
+  const bool usable = can_be_instanced(counted_from(origin_m, source.to_world));
+  const Affine to_world = counted_from(origin_m, usable ? source.to_world : Affine{});
   ShadingInstance instance = shading_instance(to_world);
   const auto index = static_cast<std::uint32_t>(instances.size());
   if (source.deformation >= 0) {
     mesh.first_geometry = static_cast<std::uint32_t>(geometries.size());
     mesh.ray_mesh = add_deforming(scene, scene_instance, index, options);
-    const MeshPose& rest = scene.deformations[static_cast<std::size_t>(source.deformation)].rest;
-    instance.flip = is_mirrored(rest) ? -instance.flip : instance.flip;
   }
   instance.first_geometry = mesh.first_geometry;
   instance.scene_instance = static_cast<std::uint32_t>(scene_instance);
@@ -202,14 +215,17 @@ void RenderScene::add_instance(const Scene& scene, std::size_t scene_instance, I
 RayGeometry RenderScene::add_geometry(const Scene& scene, std::size_t mesh, std::size_t geometry,
                                       std::uint32_t baked_instance, const DeformedVertices* shape) {
   const Geometry& source = scene.meshes[mesh].geometries[geometry];
-  const Affine* to_world = baked_instance != kNoId ? &scene.instances[baked_instance].to_world : nullptr;
+  const Affine in_world =
+      counted_from(origin_m, baked_instance != kNoId ? scene.instances[baked_instance].to_world : Affine{});
+  const Affine* to_world = baked_instance != kNoId ? &in_world : nullptr;
   RayGeometry out = placed(source, shape, to_world);
-  out.alpha = materials[static_cast<std::size_t>(source.material)].alpha_mode != AlphaMode::opaque;
+  const ShadingMaterial& material = materials[static_cast<std::size_t>(source.material)];
+  out.ask = material.alpha_mode != AlphaMode::opaque || (culls_ && !material.double_sided);
   out.tag = static_cast<std::uint32_t>(triangles.size());
   geometries.push_back({out.tag, baked_instance, static_cast<std::uint32_t>(geometry)});
   add_triangles(scene, source,
                 {out.positions, shape != nullptr ? shape->normals : source.normals,
-                 shape != nullptr ? shape->tangents : source.tangents, to_world},
+                 shape != nullptr ? shape->tangents : source.tangents, to_world, shape},
                 out.triangles);
   check_positions(out.positions, scene, mesh, geometry);
   return out;
@@ -218,27 +234,49 @@ RayGeometry RenderScene::add_geometry(const Scene& scene, std::size_t mesh, std:
 void RenderScene::add_triangles(const Scene& scene, const Geometry& geometry, const SurfaceVertices& vertices,
                                 const std::vector<std::array<std::uint32_t, 3>>& corners) {
   const auto material_index = static_cast<std::size_t>(geometry.material);
-  const TextureRef* shared = shared_coordinates(scene.materials[material_index]);
   const bool extra =
       needs_extra(geometry, materials[material_index], layered.of(static_cast<std::uint32_t>(material_index)));
   for (const auto& corner : corners) {
     ShadingTriangle triangle;
-    for (std::size_t k = 0; k < 3; ++k) {
-      triangle.uv[k] = transformed_uv(shared, geometry, corner[k]);
-    }
-    triangle.material_and_sign = static_cast<std::uint32_t>(material_index) << 1U;
-    shape_triangle(vertices, corner, triangle);
+    triangle.bits = static_cast<std::uint32_t>(material_index) << 2U;
     if (extra) {
       triangle.extra = static_cast<std::uint32_t>(extras.size());
-      extras.push_back(extra_of(geometry, corner));
+      extras.emplace_back();
     }
+    paint_triangle(scene, geometry, vertices.shape, corner, triangle);
+    shape_triangle(vertices, corner, triangle);
     triangles.push_back(triangle);
   }
 }
 
+void RenderScene::paint_triangle(const Scene& scene, const Geometry& geometry, const DeformedVertices* shape,
+                                 const std::array<std::uint32_t, 3>& corner, ShadingTriangle& triangle) {
+  const Paint paint(geometry, shape);
+  const TextureRef* shared = shared_coordinates(scene.materials[static_cast<std::size_t>(geometry.material)]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    triangle.uv[k] = transformed_uv(shared, paint, corner[k]);
+  }
+  if (triangle.extra != kNoId) {
+    extras[triangle.extra] = extra_of(paint, corner);
+  }
+}
+
+bool RenderScene::culled(std::uint32_t tag, std::uint32_t primitive, const Vec3f& direction) const {
+  const ShadingTriangle& triangle = triangles[tag + primitive];
+  if (!culls_ || materials[triangle.material()].double_sided) {
+    return false;
+  }
+  const Vec3d corner = to_double(triangle.position[0]);
+  const Vec3d face = cross(to_double(triangle.position[1]) - corner, to_double(triangle.position[2]) - corner);
+  return dot(face, to_double(direction)) * static_cast<double>(triangle.winding()) > 0;
+}
+
 bool RenderScene::transparent(std::uint32_t tag, std::uint32_t primitive, float u, float v, std::uint32_t key) const {
   const ShadingTriangle& triangle = triangles[tag + primitive];
-  const ShadingMaterial& material = materials[triangle.material_and_sign >> 1U];
+  const ShadingMaterial& material = materials[triangle.material()];
+  if (material.alpha_mode == AlphaMode::opaque) {
+    return false;
+  }
   const float w = 1.0F - u - v;
   float alpha = material.base_color.w;
   if (material.base.texture != nullptr) {

@@ -60,7 +60,7 @@ struct GeometryRecord {
 
 class RenderScene : private AlphaSource {
  public:
-  RenderScene(const Scene& scene, const TracerOptions& options);
+  RenderScene(const Scene& scene, const TracerOptions& options, const Vec3d& origin = {});
   RenderScene(const RenderScene&) = delete;  // the BVH's alpha test keeps a pointer to this object
   RenderScene& operator=(const RenderScene&) = delete;
 
@@ -73,6 +73,7 @@ class RenderScene : private AlphaSource {
 
   // A hit in the top-level scene has a geometry id that is an index into `geometries`; the id of an instance less
   // first_instance_id is an index into `instances`.
+  Vec3d origin_m;  // what its coordinates count from: a point near the camera
   std::vector<ShadingTriangle> triangles;
   std::vector<TriangleExtra> extras;
   std::vector<GeometryRecord> geometries;
@@ -88,6 +89,7 @@ class RenderScene : private AlphaSource {
   double build_s = 0;
 
  private:
+  bool culled(std::uint32_t tag, std::uint32_t primitive, const Vec3f& direction) const override;
   bool transparent(std::uint32_t tag, std::uint32_t primitive, float u, float v, std::uint32_t key) const override;
   // A mesh that instances refer to: in the ray library, and its first record in `geometries`.
   struct InstancedMesh {
@@ -106,6 +108,9 @@ class RenderScene : private AlphaSource {
                            std::uint32_t baked_instance = kNoId, const DeformedVertices* shape = nullptr);
   void add_triangles(const Scene& scene, const Geometry& geometry, const SurfaceVertices& vertices,
                      const std::vector<std::array<std::uint32_t, 3>>& corners);
+  // Sets what of a triangle and its TriangleExtra depends on texture coordinates and colours.
+  void paint_triangle(const Scene& scene, const Geometry& geometry, const DeformedVertices* shape,
+                      const std::array<std::uint32_t, 3>& corner, ShadingTriangle& triangle);
   // Adds the mesh of an instance that deforms, at rest; returns the ray library's mesh.
   std::uint32_t add_deforming(const Scene& scene, std::size_t scene_instance, std::uint32_t instance,
                               const TracerOptions& options);
@@ -122,6 +127,7 @@ class RenderScene : private AlphaSource {
   };
   std::vector<DeformingInstance> deforming_;
   int threads_ = 0;
+  bool culls_ = false;  // Scene::cull_back_faces
 };
 
 }  // namespace gazetrace

@@ -33,7 +33,8 @@ void shape_triangle(const SurfaceVertices& vertices, const std::array<std::uint3
   }
   const Vec3d e1 = to_double(triangle.position[1]) - to_double(triangle.position[0]);
   const Vec3d e2 = to_double(triangle.position[2]) - to_double(triangle.position[0]);
-  const Vec3d face = cross(e1, e2);
+  const bool mirrored = vertices.shape != nullptr && vertices.shape->is_mirrored(corner);
+  const Vec3d face = cross(e1, e2) * (mirrored ? -1.0 : 1.0);
   const double twice_area = length(face);
   const Vec3d flat = twice_area > 0 ? face / twice_area : Vec3d{0, 0, 1};
   const Vec2f& a = triangle.uv[0];
@@ -44,7 +45,7 @@ void shape_triangle(const SurfaceVertices& vertices, const std::array<std::uint3
   if (twice_area > 0 && std::isfinite(twice_uv_area) && twice_uv_area != 0) {
     triangle.lod = static_cast<float>(0.5 * std::log2(std::fabs(twice_uv_area) / twice_area));
   }
-  float sign = twice_uv_area < 0 ? -1.0F : 1.0F;
+  float sign = (twice_uv_area < 0) != mirrored ? -1.0F : 1.0F;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t vertex = corner[k];
     Vec3d n = flat;
@@ -69,7 +70,7 @@ void shape_triangle(const SurfaceVertices& vertices, const std::array<std::uint3
     }
     triangle.tangent[k] = encode_octahedral(to_float(t));
   }
-  triangle.material_and_sign = (triangle.material_and_sign & ~1U) | (sign < 0 ? 1U : 0U);
+  triangle.bits = (triangle.bits & ~3U) | (mirrored ? 2U : 0U) | (sign < 0 ? 1U : 0U);
 }
 
 void check_positions(const std::vector<Vec3f>& positions, const Scene& scene, std::size_t mesh, std::size_t primitive) {

@@ -22,8 +22,13 @@ struct alignas(32) ShadingTriangle {
   std::array<std::uint32_t, 3> normal;  // octahedral
   std::array<std::uint32_t, 3> tangent;
   float lod = 0;  // log2 of sqrt(uv area / area): Akenine-Moller et al. 2021, eq. 2, without the texture's size
-  std::uint32_t material_and_sign = 0;  // material << 1 | bitangent is negated
-  std::uint32_t extra = kNoId;          // index into TriangleExtra
+  std::uint32_t bits = 0;       // material << 2 | joints turn it inside out << 1 | bitangent is negated
+  std::uint32_t extra = kNoId;  // index into TriangleExtra
+
+  [[nodiscard]] std::uint32_t material() const { return bits >> 2U; }
+  // -1 where its corners run clockwise as one sees its front.
+  [[nodiscard]] float winding() const { return (bits & 2U) != 0 ? -1.0F : 1.0F; }
+  [[nodiscard]] float bitangent_sign() const { return (bits & 1U) != 0 ? -1.0F : 1.0F; }
 };
 static_assert(sizeof(ShadingTriangle) == 96);
 
@@ -41,6 +46,7 @@ struct SurfaceVertices {
   const std::vector<Vec3f>& normals;
   const std::vector<Vec4f>& tangents;
   const Affine* to_world = nullptr;
+  const DeformedVertices* shape = nullptr;  // where they are from, for the triangles that it mirrors
 };
 
 // Sets everything of a triangle that depends on the positions of its corners; its uv must be set already. Missing

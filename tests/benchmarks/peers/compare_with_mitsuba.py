@@ -118,15 +118,13 @@ def cases(arguments, folder):
                  Case("stock glass", "principled", False, matched_scenes.glass_balls(folder, env, 0.4))]
         if arguments.sponza:
             view = ["--eye=8,2,-0.3", "--target=-8,3,-0.3", "--yfov=50", f"--env={env}"]
-            full = ("--bounce-cone=0",)
             scene = (matched_scenes.without_normal_maps(arguments.sponza, folder), view)
-            made += [Case("sponza", "matte", True, scene, ours=full),
-                     # What each rule is worth: gazetrace's normal maps and mip levels, Mitsuba's own ways.
-                     Case("own masks", "matte", False, scene, ours=full, theirs=("--own-masks",)),
-                     Case("normal maps", "matte", False, (arguments.sponza, view), ours=full),
-                     Case("mip levels", "matte", False, scene),
-                     Case("own normals", "matte", False, scene, ours=full, theirs=("--own-normals",)),
-                     Case("own sky rows", "matte", False, scene, ours=full, theirs=("--own-environment",))]
+            made += [Case("sponza", "matte", True, scene),
+                     # What each rule is worth: gazetrace's normal maps, Mitsuba's own ways.
+                     Case("own masks", "matte", False, scene, theirs=("--own-masks",)),
+                     Case("normal maps", "matte", False, (arguments.sponza, view)),
+                     Case("own normals", "matte", False, scene, theirs=("--own-normals",)),
+                     Case("own sky rows", "matte", False, scene, theirs=("--own-environment",))]
     return made
 
 

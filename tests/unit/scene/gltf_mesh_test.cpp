@@ -2,6 +2,9 @@
 // Geometry out of hand-made files. Expected values are written out from the glTF 2.0 specification.
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <string>
+
 #include "gazetrace/scene.hpp"
 #include "support/gltf_builder.hpp"
 #include "support/png_bytes.hpp"
@@ -193,6 +196,19 @@ TEST(Normals, AreMadeUnitLengthAndZeroOnesReplaced) {
   expect_near(only_geometry(scene).normals.at(0), {0, 0.6F, 0.8F});
   expect_near(only_geometry(scene).normals.at(1), {0, 0, 1});  // the triangle's
   expect_near(only_geometry(scene).normals.at(2), {0, 0, -1});
+}
+
+// As one of length 0.
+TEST(Normals, ThatAreNoNumbersAreReplacedWithAWarning) {
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    GltfBuilder builder;
+    builder.add_triangle({{"attributes", {{"NORMAL", builder.add<float>({0, 3, 4, bad, 0, 1, 0, 0, -1}, 3)}}}});
+    const Scene scene = load(builder);
+    expect_near(only_geometry(scene).normals.at(0), {0, 0.6F, 0.8F});
+    expect_near(only_geometry(scene).normals.at(1), {0, 0, 1});
+    ASSERT_EQ(scene.warnings.size(), 1U);
+    EXPECT_NE(scene.warnings[0].find("attributes.NORMAL: 1 elements are not finite"), std::string::npos);
+  }
 }
 
 // A unit square facing +z with a normal map. `uv` of (0,0) (1,0) (1,1) (0,1), y up.

@@ -108,6 +108,32 @@ TEST(GltfMorph, ANodesWeightsGoOverItsMeshsAndAreAppliedAtLoading) {
   EXPECT_TRUE(geometry_of(scene).morph_targets.empty()) << "kept for nothing";
 }
 
+// glTF 2.0, section 3.7.2.2: what targets add to colours is clamped to 0..1 at the end; without an attribute of its own
+// the primitive has nothing to add to.
+TEST(GltfMorph, ColoursMorph) {
+  Quad quad;
+  const auto colors = [&](const std::vector<float>& one) {
+    std::vector<float> four;
+    for (int i = 0; i < 4; ++i) {
+      four.insert(four.end(), one.begin(), one.end());
+    }
+    return quad.builder.add<float>(four, static_cast<int>(one.size()));
+  };
+  quad.primitive()["attributes"]["COLOR_0"] = colors({0.5F, 0.25F, 0, 1});
+  quad.primitive()["targets"][0]["COLOR_0"] = colors({-1, 0.5F, 0.25F});
+  quad.animate({0, 1}, {0, 0, 1, 0}, "LINEAR");
+  const Scene scene = quad.load();
+  EXPECT_TRUE(scene.warnings.empty());
+  EXPECT_TRUE(shape_at(scene, 0).colors.empty());
+  EXPECT_EQ(shape_at(scene, 0.5).colors.at(2), (Vec4f{0, 0.5F, 0.125F, 1}));
+  EXPECT_EQ(shape_at(scene, 1).colors.at(2), (Vec4f{0, 0.75F, 0.25F, 1}));
+
+  Quad bare;
+  bare.primitive()["targets"][0]["COLOR_0"] = bare.builder.add<float>(std::vector<float>(12, 1.0F), 3);
+  bare.builder.json["meshes"][0]["weights"] = {1, 0};
+  EXPECT_TRUE(geometry_of(bare.load()).colors.empty());
+}
+
 TEST(GltfMorph, TwoNodesShowOneMeshInTwoShapes) {
   Quad quad;
   quad.animate({0, 1}, {0, 0, 1, 0}, "LINEAR");

@@ -267,7 +267,7 @@ TEST(Nodes, TheOffsetOfCesiumRtcMovesEverything) {
   builder.json["extensions"]["CESIUM_RTC"]["center"] = {4e6, 5e5, 4.8e6};  // on the Earth's surface
   scene = load(builder);
   expect_near(scene.instances[0].to_world.t, {4e6 + 1, 5e5, 4.8e6});
-  EXPECT_THAT(scene.warnings, ::testing::ElementsAre(HasSubstr("6268 km from the origin")));
+  EXPECT_THAT(scene.warnings, ::testing::IsEmpty()) << "nothing is lost there";
   builder.json["extensions"]["CESIUM_RTC"]["center"] = {1, 2};
   const test::TempFolder folder;
   EXPECT_THAT(test::error_of(folder.write("scene.gltf", builder.text())), HasSubstr("CESIUM_RTC.center"));

@@ -197,6 +197,68 @@ TEST(GltfSkin, MirroringJointsTurnTheTriangles) {
   expect_near(geometry.normals[1], {-1, 0, 0});
 }
 
+// As three.js and Babylon.js bind it: to the first joint that it names, which stands still here in one case and bends
+// in the other.
+TEST(GltfSkin, VerticesWithoutWeightsFollowTheirFirstJoint) {
+  for (const std::uint8_t joint : {0, 1}) {
+    Bar bar;
+    bar.weights[8] = 0;
+    bar.joints[8] = joint;
+    const Scene scene = load(bar);
+    EXPECT_THAT(scene.warnings, ::testing::ElementsAre(::testing::HasSubstr("weights of 1 vertices are zero")));
+    expect_near(shape_at(scene, kSecond).positions[2], joint == 0 ? Vec3d{0, 0.5, 0} : Vec3d{0.5, 1, 0});
+  }
+}
+
+// Two triangles in the plane z = 0, one bound to a joint that stands still and one to a joint that mirrors x. For any
+// direction along a surface, a mirror takes the bitangent sign * cross(normal, tangent) to its mirror image.
+TEST(Deformation, MirrorsJointByJointAndTangentsTurnWithIt) {
+  Geometry geometry;
+  geometry.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  geometry.normals.assign(6, {0, 0, 1});
+  geometry.tangents.assign(6, {0.6F, 0.8F, 0, 1});
+  geometry.triangles = {{0, 1, 2}, {3, 4, 5}};
+  geometry.influences = {1, {0, 0, 0, 1, 1, 1}, std::vector<float>(6, 1.0F)};
+  MeshPose pose;
+  pose.joints = {Affine{}, Affine{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {5, 0, 0}}};
+  for (const bool mirrored_first : {false, true}) {
+    std::swap(pose.joints[0], pose.joints[mirrored_first ? 1 : 0]);
+    const DeformedVertices shape = deform(geometry, pose, {});
+    for (std::size_t t = 0; t < 2; ++t) {
+      const bool mirrored = (t == 1) != mirrored_first;
+      EXPECT_EQ(shape.is_mirrored(geometry.triangles[t]), mirrored);
+      const std::uint32_t vertex = geometry.triangles[t][0];
+      expect_near(shape.normals[vertex], {0, 0, 1});
+      const Vec4f& tangent = shape.tangents[vertex];
+      const Vec3d along{tangent.x, tangent.y, tangent.z};
+      const Vec3d across = cross(to_double(shape.normals[vertex]), along) * static_cast<double>(tangent.w);
+      expect_near({tangent.x, tangent.y, tangent.z}, {mirrored ? -0.6 : 0.6, 0.8, 0});
+      expect_near(to_float(across), {mirrored ? 0.8 : -0.8, 0.6, 0});
+    }
+  }
+}
+
+// Joints 1e7 m out: vertices are exact to the float's step at the size of the mesh, not at that distance.
+TEST(GltfSkin, FarOutNoVertexLosesItsPlace) {
+  for (const bool animated : {false, true}) {
+    Bar bar;
+    bar.animated = animated;
+    bar.weights = {0.3F, 0.7F, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+    bar.builder.json["nodes"][0]["translation"] = {1e7, -3e6, 7e6};
+    const Scene scene = load(bar);
+    const Instance& instance = scene.instances.at(0);
+    const std::vector<Vec3f> positions =
+        animated ? shape_at(scene, 0).positions
+                 : scene.meshes[static_cast<std::size_t>(instance.mesh)].geometries[0].positions;
+    const auto place = [&](std::size_t i) {
+      return transform_point(instance.to_world, to_double(positions[i])) - Vec3d{1e7, -3e6, 7e6};
+    };
+    EXPECT_LT(length(place(0) - Vec3d{0, 1.5, 0}), 1e-6);
+    EXPECT_LT(length(place(1) - Vec3d{0.25, 2, 0}), 1e-6);
+    EXPECT_LT(length(place(2) - Vec3d{0, 0.5, 0}), 1e-6);
+  }
+}
+
 TEST(GltfSkin, AnAnimationCanBeChosen) {
   const auto with_two = [] {
     Bar bar;
@@ -258,7 +320,6 @@ INSTANTIATE_TEST_SUITE_P(
         BadSkin{"JointOutOfRange", [](Bar& b) { b.joints[1] = 2; },
                 "meshes[0]: vertex 0 follows joint 2; the skin of nodes[2] has 2"},
         BadSkin{"NegativeWeight", [](Bar& b) { b.weights[4] = -1; }, "WEIGHTS_0: vertex 1 has a negative weight"},
-        BadSkin{"NoWeight", [](Bar& b) { b.weights[8] = 0; }, "all weights of vertex 2 are zero"},
         BadSkin{"JointsAlone", [](Bar& b) { b.attributes()["JOINTS_0"] = b.builder.add(b.joints, 4); },
                 "JOINTS_0 comes without WEIGHTS_0"},
         BadSkin{"TooFewVertices",

@@ -41,7 +41,7 @@ Geometry ceiling(std::int32_t material = 0) {
 
 PunctualLight point_light(const Vec3f& position, const Vec3f& intensity) {
   PunctualLight light;
-  light.position_m = position;
+  light.position_m = to_double(position);
   light.intensity = intensity;
   return light;
 }

@@ -6,7 +6,7 @@ namespace gazetrace {
 
 void read_ior(ExtensionReader& from, Material& to) {
   const float ior = from.number("ior", 1.5, 0, 100);
-  to.ior = ior > 0 && ior < 1 ? 1.0F : ior;
+  to.ior = ior > 0 && ior < 1 ? from.number("ior", 1.5, 1, 100) : ior;  // with the warning of a clamped number
 }
 
 }  // namespace gazetrace
