@@ -40,12 +40,13 @@ enum class PositionUnit { automatic, fraction, px, mm, cm, deg, unit_vector, nor
 // center run from -1 to 1. automatic: the center for degrees, and the top left for everything else.
 enum class PositionOrigin { automatic, top_left, bottom_left, center };
 
-// The axes of a log's directions, of the eyes' origins and of the head's pose. In all of them but `cv`, +y is up.
+// The axes of a log's directions, of the eyes' origins and of the head's pose. +y is up but in `cv` and `unreal`.
 //   gl        +x right, -z forward, right-handed: OpenXR, glTF, and gazetrace itself
 //   unity     +x right, +z forward, left-handed
 //   sranipal  +x to the wearer's left, +z forward, right-handed: HTC's SDK, Tobii's glasses
 //   cv        +x right, +y down, +z forward, right-handed: scene cameras
-enum class GazeAxes { automatic, gl, unity, sranipal, cv };
+//   unreal    +x forward, +y right, +z up, left-handed
+enum class GazeAxes { automatic, gl, unity, sranipal, cv, unreal };
 
 std::string_view to_string(PositionUnit unit);
 std::string_view to_string(PositionOrigin origin);

@@ -147,7 +147,7 @@ GAZETRACE_ENUM_NAMES(GazeInterpolation, "gaze mode", {E::hold, "hold"}, {E::near
 GAZETRACE_ENUM_NAMES(NoGazePolicy, "policy for missing gaze", {E::hold, "hold"}, {E::center, "center"},
                      {E::uniform, "uniform"}, {E::error, "error"})
 GAZETRACE_ENUM_NAMES(GazeAxes, "gaze axes", {E::automatic, "auto"}, {E::gl, "gl"}, {E::unity, "unity"},
-                     {E::sranipal, "sranipal"}, {E::cv, "cv"})
+                     {E::sranipal, "sranipal"}, {E::cv, "cv"}, {E::unreal, "unreal"})
 GAZETRACE_ENUM_NAMES(EyeChoice, "eye", {E::automatic, "auto"}, {E::left, "left"}, {E::right, "right"},
                      {E::mean, "mean"})
 GAZETRACE_ENUM_NAMES(GazeFrame, "gaze frame", {E::automatic, "auto"}, {E::head, "head"},

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "core/enum_name.hpp"
 #include "gaze/angles.hpp"
 #include "gaze/unseen.hpp"
 #include "gazetrace/gaze.hpp"
@@ -282,17 +283,7 @@ class Resampler {
 }  // namespace
 
 std::string_view to_string(GazeState state) {
-  switch (state) {
-    case GazeState::measured:
-      return "measured";
-    case GazeState::held:
-      return "held";
-    case GazeState::center:
-      return "center";
-    case GazeState::none:
-      return "none";
-  }
-  return "none";
+  return name_of(state, {"measured", "held", "center", "none"});
 }
 
 std::int64_t log_time_ns(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_video_ns) {

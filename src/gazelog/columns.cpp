@@ -136,7 +136,8 @@ class Finder {
 };
 
 using std::string_view_literals::operator""sv;
-constexpr std::array kTime{"t"sv, "time"sv, "timestamp"sv, "recordingtimestamp"sv, "gazetimestamp"sv};
+constexpr std::array kTime{
+    "t"sv, "time"sv, "timestamp"sv, "recordingtimestamp"sv, "gazetimestamp"sv, "trackingtimestamp"sv};
 constexpr std::array kValidity{"valid"sv, "validity"sv, "isvalid"sv};
 constexpr std::array kConfidence{"confidence"sv, "conf"sv};
 constexpr std::array kPupil{"pupil"sv, "pupilsize"sv, "pupildiameter"sv, "pupilmeasure1"sv};
@@ -192,6 +193,7 @@ bool plan_eyes(ColumnPlan& plan, const Finder& find, const GazeColumns& declared
     if (!is_direction) {
       x = find.by_role_of_eye(kScreenX, eye);
       y = find.by_role_of_eye(kScreenY, eye);
+      y = y ? y : find.by_role(kScreenY);  // eyes may share their elevation
       source.z = std::nullopt;
     }
     const GazeKind kind = is_direction ? GazeKind::direction : GazeKind::screen;
@@ -314,6 +316,7 @@ void plan_position_unit(ColumnPlan& plan, const DelimitedTable& table, const Gaz
                                         place, x_heading.text, to_string(x), to_string(flag)));
   }
   plan.unit = flag != PositionUnit::automatic ? flag : x;
+  plan.x_grows_left = x_heading.text.ends_with("_cpf");  // Project Aria's frame: +x to the wearer's left
   plan.unit_evidence = flag != PositionUnit::automatic ? Evidence::option : Evidence::header;
 }
 

@@ -30,6 +30,7 @@ struct ColumnPlan {
   std::array<OptionalColumn, 3> head_position;
   std::array<OptionalColumn, 4> head_rotation;  // Euler angles where the last is missing
   GazeKind kind = GazeKind::screen;
+  bool x_grows_left = false;
   std::optional<int> time_exponent;  // empty: it is to be found by statistics
   PositionUnit unit = PositionUnit::automatic;
   Evidence unit_evidence = Evidence::header;

@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "core/enum_name.hpp"
 #include "gazelog/units.hpp"
 #include "gazetrace/gaze_read.hpp"
 
@@ -55,34 +56,9 @@ void add_places(const RawGaze& raw, const Conventions& c, Facts& facts) {
   }
 }
 
-std::string_view name_of(Conventions::TakenEye eye) {
-  switch (eye) {
-    case Conventions::TakenEye::left:
-      return "left";
-    case Conventions::TakenEye::right:
-      return "right";
-    case Conventions::TakenEye::mean:
-      return "mean";
-    case Conventions::TakenEye::combined:
-      return "combined";
-  }
-  return "combined";
-}
-
 std::string_view evidence_in_words(Evidence evidence) {
-  switch (evidence) {
-    case Evidence::option:
-      return "stated by you";
-    case Evidence::sidecar:
-      return "stated in the sidecar";
-    case Evidence::header:
-      return "stated in the file";
-    case Evidence::format:
-      return "certain by the format";
-    case Evidence::statistics:
-      return "inferred";
-  }
-  return "inferred";
+  return name_of(evidence,
+                 {"stated by you", "stated in the sidecar", "stated in the file", "certain by the format", "inferred"});
 }
 
 }  // namespace
@@ -105,7 +81,8 @@ std::vector<GazeFact> facts_in_words(const RawGaze& raw, const Conventions& conv
   add_places(raw, conventions, facts);
   if (conventions.eye_taken) {
     const auto& [taken, evidence, detail] = *conventions.eye_taken;
-    facts.add("eye", std::string(name_of(taken.eye)), evidence, taken.is_alone ? "alone" : detail);
+    facts.add("eye", std::string(name_of(taken.eye, {"left", "right", "mean", "combined"})), evidence,
+              taken.is_alone ? "alone" : detail);
   }
   return facts.facts;
 }

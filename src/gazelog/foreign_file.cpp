@@ -31,6 +31,8 @@ constexpr std::array kForeignKinds{
     ForeignKind{"ARROW1", "an Arrow or Feather file",
                 "write it as CSV, such as with pandas: read_feather(...).to_csv(...)"},
     ForeignKind{"\x93NUMPY"sv, "a NumPy array (.npy)", "write it as CSV with numpy.savetxt(), with a header"},
+    ForeignKind{"\x80\x02"sv, "a Python pickle", kExportAsCsv},
+    ForeignKind{"\x80\x03"sv, "a Python pickle", kExportAsCsv},
     ForeignKind{"\x80\x04"sv, "a Python pickle", kExportAsCsv},
     ForeignKind{"\x80\x05"sv, "a Python pickle", kExportAsCsv},
     ForeignKind{"SQLite format 3", "an SQLite database", kExportAsCsv},
@@ -41,6 +43,15 @@ constexpr std::array kForeignKinds{
     ForeignKind{"7z\xBC\xAF"sv, "a 7-Zip archive", "unpack it"},
     ForeignKind{"\x28\xB5\x2F\xFD"sv, "a zstd archive", "unpack it"},
     ForeignKind{"\xD0\xCF\x11\xE0"sv, "a file of old Excel or Word", "save it as CSV"},
+};
+
+// What is binary and known by the end of its name alone.
+constexpr std::array kBinaryEndings{
+    ForeignKind{".idf", "SMI's own recording (.idf)", "export it with SMI's IDF Converter or BeGaze as text"},
+    ForeignKind{".pldata", "Pupil Capture's own recording (.pldata)",
+                "open the recording in Pupil Player and export gaze_positions.csv"},
+    ForeignKind{".mp4", "a video", "give the file of gaze beside it"},
+    ForeignKind{".avi", "a video", "give the file of gaze beside it"},
 };
 
 [[noreturn]] void refuse_kind(const GazeFile& file, std::string_view what, std::string_view way_out) {
@@ -99,6 +110,14 @@ void refuse_foreign_file(const GazeFile& file) {
   for (const ForeignKind& kind : kForeignKinds) {
     if (text.starts_with(kind.beginning)) {
       refuse_kind(file, kind.name, kind.way_out);
+    }
+  }
+  if (text.substr(0, 4096).find('\0') != std::string_view::npos && !text.starts_with("XDF:")) {
+    const std::string path = to_lower(file.path);
+    for (const ForeignKind& kind : kBinaryEndings) {
+      if (path.ends_with(kind.beginning)) {
+        refuse_kind(file, kind.name, kind.way_out);
+      }
     }
   }
   const std::string_view head = trim(text.substr(0, text.find('\n')));

@@ -204,18 +204,21 @@ class Judge {
   void directions() {
     std::size_t count = 0;
     std::size_t backwards = 0;
+    std::size_t along_x = 0;
     std::size_t coarse = 0;
     std::vector<double> aside;
     std::vector<double> lengths;
     const std::size_t stride = raw_.rows.size() / kMostLookedAt + 1;
     for (std::size_t i = 0; i < raw_.rows.size(); i += stride) {
       const RawSample row = raw_.rows[i];
-      const Vec3d d = from_axes(vector_of(row, c_), c_.axes.value);
+      const Vec3d v = vector_of(row, c_);
+      const Vec3d d = from_axes(v, c_.axes.value);
       if (!is_usable(row.validity) || !is_finite(d) || !(length(d) > 0)) {
         continue;
       }
       ++count;
       backwards += d.z > 0 ? 1 : 0;
+      along_x += v.x > std::abs(v.y) && v.x > std::abs(v.z) ? 1 : 0;
       aside.push_back(std::acos(std::clamp(-d.z / length(d), -1.0, 1.0)) * kDegPerRad);
       lengths.push_back(length(d));
       const auto has_one_decimal = [](double value) { return std::abs(10 * value - std::round(10 * value)) < 1e-9; };
@@ -244,7 +247,15 @@ class Judge {
                          "the numbers have one decimal, as a vector's ToString() writes them; log all digits", "",
                          false, false});
     }
-    if (backwards * 2 > count) {
+    if (c_.axes.value != GazeAxes::unreal && along_x * 10 > count * 9) {
+      add({"axes",
+           fmt::format("the axes {}: {} of {} directions point along +x",
+                       c_.axes.evidence == Evidence::statistics ? "are undecided" : "can hardly be right", along_x,
+                       count),
+           fmt::format("to the side in {} axes; +x is ahead in unreal (z up)", to_string(c_.axes.value)),
+           "`axes` unreal"},
+          c_.axes.evidence);
+    } else if (backwards * 2 > count) {
       add({"axes",
            fmt::format("the axes {}: {} of {} directions point backwards",
                        c_.axes.evidence == Evidence::statistics ? "are undecided" : "can hardly be right", backwards,

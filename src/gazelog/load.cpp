@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/enum_name.hpp"
 #include "core/text.hpp"
 #include "gazelog/decimal_comma.hpp"
 #include "gazelog/event_table.hpp"
@@ -197,33 +198,11 @@ auto with_file(const std::string& path, const GazeReadOptions& options, const Ac
 }  // namespace
 
 std::string_view to_string(GazeValidity validity) {
-  switch (validity) {
-    case GazeValidity::ok:
-      return "ok";
-    case GazeValidity::low_confidence:
-      return "low_confidence";
-    case GazeValidity::blink:
-      return "blink";
-    case GazeValidity::lost:
-      return "lost";
-    case GazeValidity::off_screen:
-      return "off_screen";
-    case GazeValidity::interpolated:
-      return "interpolated";
-  }
-  return "lost";
+  return name_of(validity, {"ok", "low_confidence", "blink", "lost", "off_screen", "interpolated"});
 }
 
 std::string_view to_string(Eye eye) {
-  switch (eye) {
-    case Eye::left:
-      return "left";
-    case Eye::right:
-      return "right";
-    case Eye::cyclopean:
-      return "cyclopean";
-  }
-  return "cyclopean";
+  return name_of(eye, {"left", "right", "cyclopean"});
 }
 
 std::string_view to_string(GazeDevice device) {
@@ -231,51 +210,15 @@ std::string_view to_string(GazeDevice device) {
 }
 
 std::string_view to_string(GazeKind kind) {
-  switch (kind) {
-    case GazeKind::screen:
-      return "screen";
-    case GazeKind::direction:
-      return "direction";
-    case GazeKind::scene_camera:
-      return "scene-camera";
-  }
-  return "screen";
+  return name_of(kind, {"screen", "direction", "scene-camera"});
 }
 
 std::string_view to_string(Evidence evidence) {
-  switch (evidence) {
-    case Evidence::option:
-      return "option";
-    case Evidence::sidecar:
-      return "sidecar";
-    case Evidence::header:
-      return "header";
-    case Evidence::format:
-      return "format";
-    case Evidence::statistics:
-      return "statistics";
-  }
-  return "statistics";
+  return name_of(evidence, {"option", "sidecar", "header", "format", "statistics"});
 }
 
 std::string_view to_string(GazeEventType type) {
-  switch (type) {
-    case GazeEventType::fixation:
-      return "fixation";
-    case GazeEventType::saccade:
-      return "saccade";
-    case GazeEventType::blink:
-      return "blink";
-    case GazeEventType::message:
-      return "message";
-    case GazeEventType::segment:
-      return "segment";
-    case GazeEventType::trial:
-      return "trial";
-    case GazeEventType::aoi:
-      return "aoi";
-  }
-  return "message";
+  return name_of(type, {"fixation", "saccade", "blink", "message", "segment", "trial", "aoi"});
 }
 
 std::vector<GazeFormatInfo> gaze_formats() {

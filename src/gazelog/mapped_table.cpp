@@ -77,9 +77,10 @@ class RowReader {
  private:
   // Rows of a time and a text are messages, which loggers write between those of gaze.
   bool is_message(RawGaze& raw) {
-    const std::string_view text = rows_.is_short() ? text_of_message(rows_, plan_.time) : "";
+    std::size_t time = plan_.time;
+    const std::string_view text = rows_.is_short() ? text_of_message(rows_, time) : "";
     std::int64_t t_ns = 0;
-    if (text.empty() || scaled_integer(rows_.cell(plan_.time), time_.exponent, t_ns) != NumberStatus::ok) {
+    if (text.empty() || scaled_integer(rows_.cell(time), time_.exponent, t_ns) != NumberStatus::ok) {
       return false;
     }
     add_message(raw, t_ns, std::string(text), rows_.line());
@@ -139,7 +140,7 @@ class RowReader {
   }
 
   void read_position(const GazeSource& source, GazeKind kind, RawSample& sample) {
-    const double x = rows_.number(source.x);
+    const double x = plan_.x_grows_left ? -rows_.number(source.x) : rows_.number(source.x);
     const double y = rows_.number(source.y);
     const double z = source.z ? rows_.number(*source.z) : 0.0;
     // Loggers write unknown values as zeros: (0, 0) without a validity is a missing value, not the corner.
@@ -196,30 +197,6 @@ class RowReader {
   bool has_head_ = false;
   std::string last_frame_;
 };
-
-int time_exponent_by_statistics(const GazeFile& file, const DelimitedTable& table, std::size_t column, RawGaze& raw) {
-  const std::string place = place_of(file, table.header_line);
-  std::vector<double> times;
-  TableRows rows(file, table, column + 1);
-  while (times.size() < 2000 && rows.next()) {
-    if (const auto text = rows.cell(column); times.empty() && !number_from(text) && !is_missing(text)) {
-      rows.time_ns(column, {});  // says what a first time is that is no number
-    }
-    if (const auto value = number_from(rows.cell(column))) {
-      times.push_back(*value);
-    }
-  }
-  const auto exponent = guess_time_exponent(times);
-  const std::string& name = table.headings[column].text;
-  if (!exponent) {
-    throw Error(ErrorKind::input, place,
-                fmt::format("the unit of time column '{}' is not stated and cannot be guessed from its steps", name),
-                "give `time-unit`, or write it into the header: t[ms]");
-  }
-  raw.warnings.push_back(fmt::format("{}: guessed from its steps that '{}' is in {}; state it with `time-unit`", place,
-                                     name, time_unit_text(*exponent)));
-  return *exponent;
-}
 
 // .NET counts steps of 100 ns from the year 1, which exceeds int64 nanoseconds, so the stamps are counted from 1970.
 TimeScale time_scale(const GazeFile& file, const DelimitedTable& table, const ColumnPlan& plan,
@@ -316,7 +293,7 @@ void declare_positions(RawGaze& raw, const ColumnPlan& plan, const GazeFile& fil
                  {plan.unit,
                   !is_default ? columns.origin
                   : defined   ? PositionOrigin::top_left
-                              : PositionOrigin::automatic,
+                              : origin_in_column(file, table, raw),
                   plan.unit_evidence == Evidence::option ? declared : plan.unit_evidence, names,
                   // A log that names the state of each sample has stated its validity itself.
                   style == ValidityStyle::names && plan.sources.front().validity.has_value(),
@@ -324,10 +301,38 @@ void declare_positions(RawGaze& raw, const ColumnPlan& plan, const GazeFile& fil
                  place);
   raw.directions_grow_up = true;
   const std::string x_name = letters_and_digits(table.headings[plan.sources.front().x].name);
-  raw.declared.degrees_are_directions = x_name == "yaw" || x_name == "azimuth";  // angles of the eye, on no display
+  // Angles of the eye, on no display.
+  raw.declared.degrees_are_directions = x_name.ends_with("yaw") || x_name.ends_with("azimuth");
+  if (plan.x_grows_left) {
+    add_note(raw, "frame", "CPF, x to the left; turned to the right", Evidence::header, "Project Aria's");
+  }
 }
 
 }  // namespace
+
+int time_exponent_by_statistics(const GazeFile& file, const DelimitedTable& table, std::size_t column, RawGaze& raw) {
+  const std::string place = place_of(file, table.header_line);
+  std::vector<double> times;
+  TableRows rows(file, table, column + 1);
+  while (times.size() < 2000 && rows.next()) {
+    if (const auto text = rows.cell(column); times.empty() && !number_from(text) && !is_missing(text)) {
+      rows.time_ns(column, {});  // says what a first time is that is no number
+    }
+    if (const auto value = number_from(rows.cell(column))) {
+      times.push_back(*value);
+    }
+  }
+  const auto exponent = guess_time_exponent(times);
+  const std::string& name = table.headings[column].text;
+  if (!exponent) {
+    throw Error(ErrorKind::input, place,
+                fmt::format("the unit of time column '{}' is not stated and cannot be guessed from its steps", name),
+                "give `time-unit`, or write it into the header: t[ms]");
+  }
+  raw.warnings.push_back(fmt::format("{}: guessed from its steps that '{}' is in {}; state it with `time-unit`", place,
+                                     name, time_unit_text(*exponent)));
+  return *exponent;
+}
 
 RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, const GazeColumns& columns,
                           ValidityStyle style, Evidence evidence) {
@@ -352,6 +357,9 @@ RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, con
   RawGaze raw;
   raw.source = file.path;
   find_sum_of_eyes(file, table, plan, raw);
+  if (columns.x.empty() && style == ValidityStyle::any) {
+    find_other_things(table, plan, raw);
+  }
   raw.kind = plan.kind;
   raw.clock = preamble.clock;
   raw.recording_geometry = preamble.geometry;

@@ -27,6 +27,9 @@ struct GazetracePreamble {
 // Throws Error(input) for known lines with values that are wrong.
 GazetracePreamble read_preamble(const GazeFile& file, const DelimitedTable& table);
 
+// The unit of a column of stamps by their steps, with a warning; Error(input) where these fit none.
+int time_exponent_by_statistics(const GazeFile& file, const DelimitedTable& table, std::size_t column, RawGaze& raw);
+
 // Reads the rows, and declares what the header and the map say about them. `columns` replaces `options.columns`; it is
 // a preset merged with what the user declared, and `evidence` says where the preset's part comes from.
 RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, const GazeColumns& columns,

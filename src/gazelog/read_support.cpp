@@ -125,6 +125,9 @@ HeadPose head_pose_from_axes(std::int64_t t_ns, const Vec3d& position_m, const Q
       return {t_ns, from_axes(position_m, axes), {-q.x, q.y, -q.z, q.w}};
     case GazeAxes::cv:
       return {t_ns, from_axes(position_m, axes), {q.x, -q.y, -q.z, q.w}};
+    case GazeAxes::unreal:
+      // Its three axes become others, one of them the other way round, so that all rotations turn the other way.
+      return {t_ns, from_axes(position_m, axes), {-q.y, -q.z, q.x, q.w}};
   }
   return {t_ns, position_m, q};
 }

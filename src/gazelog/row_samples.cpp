@@ -150,6 +150,8 @@ Vec3d from_axes(const Vec3d& v, GazeAxes axes) {
       return {-v.x, v.y, -v.z};
     case GazeAxes::cv:
       return {v.x, -v.y, -v.z};
+    case GazeAxes::unreal:
+      return {v.y, v.z, -v.x};
   }
   return v;
 }

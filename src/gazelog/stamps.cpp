@@ -139,7 +139,8 @@ struct BackwardStep {
 struct Stamps {
   double step_ns = 0;  // median of those that grow
   std::vector<BackwardStep> backward;
-  std::size_t pairs = 0;  // rows that repeat the time of the row before, of the same eye, at another place
+  std::size_t pairs = 0;    // rows that repeat the time of the row before, of the same eye, at another place
+  std::size_t triples = 0;  // those of them whose row before does so, too
 };
 
 Stamps look_at(const RawRows& rows) {
@@ -152,7 +153,9 @@ Stamps look_at(const RawRows& rows) {
     if (t_ns < before_ns) {
       stamps.backward.push_back({i, before_ns, t_ns});
     } else if (t_ns == before_ns) {
-      stamps.pairs += rows.eye(i) == rows.eye(i - 1) && !is_same_place(rows.at(i), rows.at(i - 1)) ? 1 : 0;
+      const bool repeats = rows.eye(i) == rows.eye(i - 1) && !is_same_place(rows.at(i), rows.at(i - 1));
+      stamps.pairs += repeats ? 1 : 0;
+      stamps.triples += repeats && i > 1 && rows.t_ns(i - 2) == t_ns ? 1 : 0;
     } else if (steps.size() < kMostSteps) {
       steps.push_back(static_cast<double>(t_ns) - static_cast<double>(before_ns));
     }
@@ -220,8 +223,24 @@ bool belongs_elsewhere(const RawRows& rows, const std::vector<BackwardStep>& ste
   return false;
 }
 
+// Whether the rows above a step back fill the time that the rows below it go through again: a clock that was set back.
+bool overlaps_without_a_gap(const RawRows& rows, const BackwardStep& step, double step_ns) {
+  constexpr double kFewestSteps = 8;
+  const double steps = static_cast<double>(step.before_ns - step.after_ns) / std::max(step_ns, 1.0);
+  std::size_t first = step.row;
+  while (first > 0 && rows.t_ns(first - 1) > step.after_ns) {
+    --first;
+  }
+  std::size_t end = step.row;
+  while (end < rows.size() && rows.t_ns(end) < step.before_ns) {
+    ++end;
+  }
+  const auto is_full = [&](std::size_t count) { return static_cast<double>(count) > 0.8 * steps; };
+  return steps >= kFewestSteps && is_full(step.row - first) && is_full(end - step.row);
+}
+
 void divide_at_restarts(RawGaze& raw, const Stamps& stamps) {
-  constexpr std::int64_t kLeastBackNs = 1'000'000'000;
+  constexpr std::int64_t kLeastBackNs = 1'000'000'000;  // or less, where the rows before it leave no room
   constexpr std::size_t kRowsOfPart = 500;
   const std::vector<BackwardStep>& steps = stamps.backward;
   if (steps.empty() || steps.size() > std::max<std::size_t>(1, raw.rows.size() / kRowsOfPart) ||
@@ -229,7 +248,9 @@ void divide_at_restarts(RawGaze& raw, const Stamps& stamps) {
     return;
   }
   for (std::size_t s = 0; s < steps.size(); ++s) {
-    if (steps[s].before_ns - steps[s].after_ns < kLeastBackNs || belongs_elsewhere(raw.rows, steps, s)) {
+    const bool is_far = steps[s].before_ns - steps[s].after_ns >= kLeastBackNs ||
+                        overlaps_without_a_gap(raw.rows, steps[s], stamps.step_ns);
+    if (!is_far || belongs_elsewhere(raw.rows, steps, s)) {
       return;
     }
   }
@@ -251,6 +272,15 @@ void mend_stamps(RawGaze& raw, UnorderedPolicy policy) {
     return;
   }
   const Stamps stamps = look_at(raw.rows);
+  if (stamps.triples * 5 > raw.rows.size()) {
+    const std::string problem = fmt::format(
+        "{} of {} rows repeat the time of the row before at another place: the stamps were rounded, as a "
+        "spreadsheet shows long numbers (1.70112E+12)",
+        stamps.pairs, raw.rows.size());
+    raw.faults.push_back({"rounded-stamps", fmt::format("{}:{}", raw.source, raw.rows[1].row), problem,
+                          "take the stamps from the original file, with all their digits", "", problem});
+    return;
+  }
   if (stamps.pairs * 20 > raw.rows.size() * 9) {
     if (policy != UnorderedPolicy::pairs) {
       add_fault(raw, "pairs", 1, "every time stands twice, at different places: the stamps are too coarse for the rate",

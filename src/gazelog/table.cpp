@@ -161,11 +161,21 @@ ColumnHeading parse_heading(std::string_view cell) {
       return heading;
     }
   }
-  // "x_px", "time_ms": only where the last part is a unit and not a column itself.
+  // "x_px", "time_ms": only where the last part is a unit and not a column itself; else "yaw_rads_cpf", "gaze_deg_x".
   const std::size_t bar = text.rfind('_');
-  if (bar != std::string_view::npos && bar > 0 && is_known_unit(text.substr(bar + 1)) && text.substr(bar + 1) != "1") {
+  if (bar == std::string_view::npos || bar == 0) {
+    return heading;
+  }
+  const std::size_t before = text.rfind('_', bar - 1);
+  const std::string_view last = text.substr(bar + 1);
+  if (is_known_unit(last) && last != "1") {
     heading.name = text.substr(0, bar);
-    heading.unit = text.substr(bar + 1);
+    heading.unit = last;
+  } else if (before != std::string_view::npos && before > 0 && bar - before > 2 &&
+             is_known_unit(text.substr(before + 1, bar - before - 1))) {
+    heading.name = text.substr(0, before);
+    heading.name += last == "cpf" ? "" : text.substr(bar);  // a frame of the head, not a part of the name
+    heading.unit = text.substr(before + 1, bar - before - 1);
   }
   return heading;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/text.hpp"
+#include "gazelog/read_support.hpp"
 
 namespace gazetrace {
 namespace {
@@ -102,8 +103,56 @@ void find_sum_of_eyes(const GazeFile& file, const DelimitedTable& table, const C
                         "take the columns of one eye: " + setting, setting, problem});
 }
 
-std::string_view text_of_message(TableRows& rows, std::size_t time) {
+void find_other_things(const DelimitedTable& table, const ColumnPlan& plan, RawGaze& raw) {
+  const std::string& x = table.headings[plan.sources.front().x].text;
+  const std::string& y = table.headings[plan.sources.front().y].text;
+  const std::string name = letters_and_digits(table.headings[plan.sources.front().x].name);
+  const auto names = [&](std::string_view word) { return name.find(word) != std::string::npos; };
+  if (plan.kind != GazeKind::screen || plan.sources.size() > 1 || names("gaze") || names("eye") || names("por")) {
+    return;
+  }
+  std::string beside = name;
+  const bool turns = name == "yaw" || name == "azimuth";
+  if (turns) {
+    beside = "roll";
+  } else if (const std::size_t at = beside.rfind('x'); at != std::string::npos) {
+    beside[at] = 'z';
+  }
+  const auto third = beside == name ? std::nullopt : table.find(beside);
+  if (third) {
+    const std::string problem =
+        fmt::format("'{}' and '{}' stand beside '{}': {}", x, y, table.headings[*third].text,
+                    turns ? "so the head's rotation is written, and an eye does not roll"
+                          : "three numbers are a place in space or a direction, and no place on a display");
+    raw.faults.push_back({"look-alike", table.place, problem,
+                          "name the columns of gaze with `x-column` and `y-column`, with `z-column` if they are "
+                          "directions",
+                          "`x-column` and `y-column`", problem});
+  }
+}
+
+PositionOrigin origin_in_column(const GazeFile& file, const DelimitedTable& table, RawGaze& raw) {
+  const auto column = table.find_any({"coordinate_system", "coordinate_origin", "screen_origin", "origin"});
+  TableRows rows(file, table, table.headings.size());
+  if (!column || !rows.next()) {
+    return PositionOrigin::automatic;
+  }
+  const std::string text(rows.cell(*column));
+  const std::string word = letters_and_digits(text);
+  const auto says = [&](std::string_view part) { return word.find(part) != std::string::npos; };
+  add_note(raw, "coordinates", text.substr(0, 40), Evidence::header, table.headings[*column].text);
+  return says("bottom") || says("lowerleft") ? PositionOrigin::bottom_left
+         : says("cent")                      ? PositionOrigin::center
+         : says("top") || says("upperleft")  ? PositionOrigin::top_left
+                                             : PositionOrigin::automatic;
+}
+
+std::string_view text_of_message(TableRows& rows, std::size_t& time) {
   constexpr std::size_t kMostCells = 40;
+  if (to_lower(rows.cell(std::size_t{0})) == "msg" && !rows.cell(time + 2).empty()) {
+    ++time;  // everything stands one column further on
+    return rows.cell(time + 1);
+  }
   std::size_t text = kMostCells;
   for (std::size_t i = 0; i < kMostCells; ++i) {
     const std::string_view cell = rows.cell(i);

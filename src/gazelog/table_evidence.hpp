@@ -15,8 +15,15 @@ GazeColumns with_z_beside(const GazeFile& file, const DelimitedTable& table, con
 // Adds a fault where a combined gaze is the sum of both eyes' columns beside it.
 void find_sum_of_eyes(const GazeFile& file, const DelimitedTable& table, const ColumnPlan& plan, RawGaze& raw);
 
-// The text of a row that has nothing else but a time; empty for other rows.
-std::string_view text_of_message(TableRows& rows, std::size_t time);
+// Adds a fault where the columns beside those of the gaze say that they are the head's rotation or places in space.
+void find_other_things(const DelimitedTable& table, const ColumnPlan& plan, RawGaze& raw);
+
+// The origin that a column of the first row names; automatic where there is none, or none that is known.
+PositionOrigin origin_in_column(const GazeFile& file, const DelimitedTable& table, RawGaze& raw);
+
+// The text of a row that has nothing else but a time, or that begins with MSG; empty for other rows. `time` becomes the
+// column of its time.
+std::string_view text_of_message(TableRows& rows, std::size_t& time);
 
 // Rows of sensors other than the eye tracker, by a column that names the sensor: those of whose rows none has gaze.
 class OtherSensors {

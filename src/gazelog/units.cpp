@@ -9,13 +9,14 @@
 #include <limits>
 #include <utility>
 
+#include "core/enum_name.hpp"
 #include "core/statistics.hpp"
 #include "core/text.hpp"
 
 namespace gazetrace {
 
 std::optional<PositionUnit> position_unit_from(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, PositionUnit>, 23> kSpellings{{
+  static constexpr std::array<std::pair<std::string_view, PositionUnit>, 24> kSpellings{{
       {"1", PositionUnit::fraction},
       {"norm", PositionUnit::fraction},
       {"normalized", PositionUnit::fraction},
@@ -35,6 +36,7 @@ std::optional<PositionUnit> position_unit_from(std::string_view text) {
       {"degrees of visual angle", PositionUnit::deg},
       {"\xC2\xB0", PositionUnit::deg},
       {"rad", PositionUnit::rad},
+      {"rads", PositionUnit::rad},
       {"radian", PositionUnit::rad},
       {"radians", PositionUnit::rad},
       {"unit", PositionUnit::unit_vector},
@@ -54,59 +56,15 @@ std::optional<PositionUnit> position_unit_from(std::string_view text) {
 }
 
 std::string_view to_string(PositionUnit unit) {
-  switch (unit) {
-    case PositionUnit::automatic:
-      return "auto";
-    case PositionUnit::fraction:
-      return "fraction";
-    case PositionUnit::px:
-      return "px";
-    case PositionUnit::mm:
-      return "mm";
-    case PositionUnit::cm:
-      return "cm";
-    case PositionUnit::deg:
-      return "deg";
-    case PositionUnit::unit_vector:
-      return "unit-vector";
-    case PositionUnit::norm:
-      return "norm";
-    case PositionUnit::height:
-      return "height";
-    case PositionUnit::rad:
-      return "rad";
-  }
-  return "auto";
+  return name_of(unit, {"auto", "fraction", "px", "mm", "cm", "deg", "unit-vector", "norm", "height", "rad"});
 }
 
 std::string_view to_string(PositionOrigin origin) {
-  switch (origin) {
-    case PositionOrigin::automatic:
-      return "auto";
-    case PositionOrigin::top_left:
-      return "top-left";
-    case PositionOrigin::bottom_left:
-      return "bottom-left";
-    case PositionOrigin::center:
-      return "center";
-  }
-  return "auto";
+  return name_of(origin, {"auto", "top-left", "bottom-left", "center"});
 }
 
 std::string_view to_string(GazeAxes axes) {
-  switch (axes) {
-    case GazeAxes::automatic:
-      return "auto";
-    case GazeAxes::gl:
-      return "gl";
-    case GazeAxes::unity:
-      return "unity";
-    case GazeAxes::sranipal:
-      return "sranipal";
-    case GazeAxes::cv:
-      return "cv";
-  }
-  return "auto";
+  return name_of(axes, {"auto", "gl", "unity", "sranipal", "cv", "unreal"});
 }
 
 std::optional<int> time_exponent_of(TimeUnit unit) {

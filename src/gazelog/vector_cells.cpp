@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gazelog/vector_cells.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -11,9 +13,9 @@
 namespace gazetrace {
 namespace {
 
-constexpr std::size_t kLeastComponents = 3, kMostComponents = 4;
+constexpr std::size_t kLeastComponents = 2, kMostComponents = 4;
 
-// The components of a cell such as (1, 2, 3), [1;2;3] or (1 2 3); none for any other.
+// The components of a cell such as (1, 2, 3), [1;2;3], (1 2 3) or Unreal's X=1 Y=2 Z=3; none for any other.
 std::vector<std::string_view> components_of(std::string_view cell) {
   std::vector<std::string_view> parts;
   std::string_view text = trim(cell);
@@ -22,16 +24,21 @@ std::vector<std::string_view> components_of(std::string_view cell) {
   }
   const bool is_in_brackets =
       text.size() > 2 && ((text.front() == '(' && text.back() == ')') || (text.front() == '[' && text.back() == ']'));
-  if (!is_in_brackets) {
+  const bool is_named = text.starts_with("X=");
+  if (!is_in_brackets && !is_named) {
     return parts;
   }
-  text = text.substr(1, text.size() - 2);
+  text = is_named ? text : text.substr(1, text.size() - 2);
   const char mark = text.find(',') != std::string_view::npos   ? ','
                     : text.find(';') != std::string_view::npos ? ';'
                                                                : ' ';
   split_cells(text, mark, parts);
   for (std::string_view& part : parts) {
     part = trim(part);
+    if (is_named && part.size() > 1 && part[1] == '=' &&
+        part[0] == "XYZW"[std::min<std::size_t>(3, &part - parts.data())]) {
+      part.remove_prefix(2);
+    }
     if (!number_from(part) && !is_missing(part)) {
       return {};
     }
@@ -62,7 +69,8 @@ void split_outside_brackets(std::string_view line, char separator, std::vector<s
 
 void split_vector_cells(GazeFile& file) {
   const std::string_view head = head_of(file, 16384);
-  if (head.find_first_of("([") == std::string_view::npos || head.find('\0') != std::string_view::npos) {
+  if ((head.find_first_of("([") == std::string_view::npos && head.find("X=") == std::string_view::npos) ||
+      head.find('\0') != std::string_view::npos) {
     return;
   }
   const GazeFile start{file.path, std::string(head)};
@@ -76,6 +84,13 @@ void split_vector_cells(GazeFile& file) {
   bool any = false;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::size_t count = components_of(cells[i]).size();
+    constexpr std::size_t kList = 12;
+    if (count > kList && i + 1 < cells.size() && components_of(cells[i + 1]).size() == count) {
+      throw Error(
+          ErrorKind::input, place_of(file, table.lines_above + 1),
+          fmt::format("a cell of this row holds a list of {} numbers, as PsychoPy and jsPsych write a trial", count),
+          "write a row for each sample, such as with pandas: explode()");
+    }
     components[i] = count >= kLeastComponents && count <= kMostComponents ? count : 0;
     any = any || components[i] > 0;
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "core/enum_name.hpp"
 #include "gazetrace/gaze_events.hpp"
 
 namespace gazetrace {
@@ -39,23 +40,7 @@ std::string_view to_string(GazeSpace space) {
 }
 
 std::string_view to_string(EyeMovement movement) {
-  switch (movement) {
-    case EyeMovement::fixation:
-      return "fixation";
-    case EyeMovement::saccade:
-      return "saccade";
-    case EyeMovement::pursuit:
-      return "pursuit";
-    case EyeMovement::blink:
-      return "blink";
-    case EyeMovement::lost:
-      return "lost";
-    case EyeMovement::unclassified:
-      return "unclassified";
-    case EyeMovement::microsaccade:
-      return "microsaccade";
-  }
-  return "unclassified";
+  return name_of(movement, {"fixation", "saccade", "pursuit", "blink", "lost", "unclassified", "microsaccade"});
 }
 
 }  // namespace gazetrace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/enum_name.hpp"
 #include "gazelog/mending.hpp"
 #include "gazelog/recordings.hpp"
 #include "gazelog/timing.hpp"
@@ -31,27 +32,11 @@ void measure_ranges(const GazeLog& log, GazeInspection& report) {
 }  // namespace
 
 std::string_view to_string(AxisVerdict verdict) {
-  switch (verdict) {
-    case AxisVerdict::confirmed:
-      return "confirmed";
-    case AxisVerdict::flipped:
-      return "flipped";
-    case AxisVerdict::undecided:
-      return "undecided";
-  }
-  return "undecided";
+  return name_of(verdict, {"confirmed", "flipped", "undecided"});
 }
 
 std::string_view to_string(FindingKind kind) {
-  switch (kind) {
-    case FindingKind::fault:
-      return "fault";
-    case FindingKind::suspicion:
-      return "suspicion";
-    case FindingKind::note:
-      return "note";
-  }
-  return "note";
+  return name_of(kind, {"fault", "suspicion", "note"});
 }
 
 namespace {

@@ -2,7 +2,7 @@
 // Poses as OpenXR defines them and loggers write them: time, gaze_orientation_x .. w (a quaternion xyzw; gaze looks
 // along its -z) and, where logged, head_position_x .. and head_orientation_x .. w, flags, the sample's own time. +x
 // right, +y up, -z forward. Gaze is in the VIEW space unless a column `space` says otherwise; in that case the head's
-// pose of the same row transforms it there.
+// pose of the same row transforms it there. Loggers of Unity and Unreal write a direction in place of gaze's rotation.
 #include <fmt/format.h>
 
 #include <array>
@@ -12,7 +12,9 @@
 
 #include "core/statistics.hpp"
 #include "core/text.hpp"
+#include "gazelog/mapped_table.hpp"
 #include "gazelog/read_support.hpp"
+#include "gazelog/units.hpp"
 
 namespace gazetrace {
 namespace {
@@ -41,22 +43,30 @@ Columns<N> find_group(const DelimitedTable& table, std::initializer_list<std::st
 
 struct PoseColumns {
   Columns<4> gaze;
-  Columns<3> gaze_position, head_position;
+  Columns<3> direction, gaze_position, head_position;
   Columns<4> head;
   OptionalColumn time, sample_time, tracked, flags, confidence, space;
+
+  [[nodiscard]] bool has_gaze() const { return gaze[0] || (direction[0] && head[0]); }
 };
 
 PoseColumns find_columns(const DelimitedTable& table) {
   PoseColumns c;
   c.gaze = find_group<4>(table, {"gaze orientation ", "gaze rotation ", "gaze pose orientation ",
                                  "eye gaze orientation ", "gaze q", "gaze orientation q"});
-  c.gaze_position = find_group<3>(table, {"gaze position ", "gaze pose position ", "eye gaze position ", "gaze p"});
+  if (!c.gaze[0]) {
+    c.direction =
+        find_group<3>(table, {"gaze direction ", "gaze dir ", "gaze forward ", "gaze vector ", "eye direction "});
+  }
+  c.gaze_position =
+      find_group<3>(table, {"gaze position ", "gaze pose position ", "eye gaze position ", "gaze origin ", "gaze p"});
   c.head = find_group<4>(table, {"head orientation ", "head rotation ", "head q", "view orientation ",
                                  "hmd orientation ", "hmd rotation ", "hmd q"});
   c.head_position = find_group<3>(table, {"head position ", "head p", "view position ", "hmd position ", "hmd p"});
-  c.time = table.find_any({"time", "timestamp", "xr time", "display time", "predicted display time"});
+  c.time =
+      table.find_any({"time", "timestamp", "xr time", "display time", "predicted display time", "eye data timestamp"});
   c.sample_time = table.find_any({"sample time", "gaze sample time", "gaze time"});
-  c.tracked = table.find_any({"gaze tracked", "is tracked", "gaze valid", "is valid", "tracked"});
+  c.tracked = table.find_any({"gaze tracked", "is tracked", "gaze valid", "is valid", "tracked", "gaze has value"});
   c.flags = table.find_any({"location flags", "gaze location flags", "gaze flags"});
   c.confidence = table.find_any({"confidence", "gaze confidence"});
   c.space = table.find_any({"space", "reference space", "gaze space"});
@@ -211,14 +221,14 @@ double sniff_gaze_openxr(const GazeFile& file) {
   const GazeFile start{file.path, std::string(head)};
   const DelimitedTable table = open_table(start);
   const PoseColumns c = find_columns(table);
-  return table.has_header && c.gaze[0] && c.time ? c.head[0] ? 0.9 : 0.8 : 0.0;
+  return table.has_header && c.has_gaze() && c.time ? c.head[0] ? 0.9 : 0.8 : 0.0;
 }
 
 RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
   const std::string place = place_of(file, table.header_line);
   const PoseColumns c = find_columns(table);
-  if (!c.gaze[0] || (!c.time && options.columns.time.empty())) {
+  if (!c.has_gaze() || (!c.time && options.columns.time.empty())) {
     throw Error(ErrorKind::input, place, "there are no columns of time and of gaze's orientation, x, y, z, w",
                 "the columns are: " + column_listing(table));
   }
@@ -226,11 +236,20 @@ RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
   raw.source = file.path;
   raw.format = "openxr-pose";
   raw.kind = GazeKind::direction;
-  raw.clock = "XrTime";
+  const bool is_own_table = !c.gaze[0];  // a pose's unit and axes are OpenXR's, a direction's are anybody's
+  raw.is_own_table = is_own_table;
+  raw.clock = is_own_table ? "" : "XrTime";
   const std::size_t time = time_column(table, options, c.time.value_or(0), place);
   const auto stated = time_exponent(table.headings[time].unit);
-  const TimeScale scale = declare_time(raw, options, table.headings[time].text, stated.value_or(0),
-                                       stated ? Evidence::header : Evidence::format, place);
+  const auto given = time_exponent_of(options.columns.time_unit);
+  const int otherwise = !is_own_table ? 0 : given ? *given : time_exponent_by_statistics(file, table, time, raw);
+  const TimeScale scale = declare_time(raw, options, table.headings[time].text, stated.value_or(otherwise),
+                                       stated         ? Evidence::header
+                                       : is_own_table ? Evidence::statistics
+                                                      : Evidence::format,
+                                       place);
+  const GazeAxes axes = is_own_table ? options.columns.axes : GazeAxes::gl;
+  const GazeAxes head_axes = options.columns.head_axes == GazeAxes::automatic ? axes : options.columns.head_axes;
   const bool has_head = c.head[0].has_value();
   std::vector<PosedGaze> gazes;  // of rows that state no space
   GazeSpace space_of_gaze;
@@ -247,7 +266,7 @@ RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
       const auto p = values(rows, c.head_position);
       const auto g = values(rows, c.gaze_position);
       space_of_gaze.add({g[0], g[1], g[2]}, {p[0], p[1], p[2]});
-      raw.head.push_back(head_pose_from_axes(t_ns, {p[0], p[1], p[2]}, head, options.columns.head_axes));
+      raw.head.push_back(head_pose_from_axes(t_ns, {p[0], p[1], p[2]}, head, head_axes));
     }
     // Runtimes that cannot interpolate clamp the time, which gives the same sample again. 0 is an unknown time.
     const std::string_view sample_time = rows.cell(c.sample_time);
@@ -259,8 +278,11 @@ RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
     RawSample sample = missing_row(t_ns, rows.line(), Eye::cyclopean);
     sample.confidence = static_cast<float>(rows.number(c.confidence));
     const std::array<double, 4> q = values(rows, c.gaze);
-    if (is_rotation(q)) {
-      sample.at = rotate(normalize(Quatd{q[0], q[1], q[2], q[3]}), {0, 0, -1});
+    const std::array<double, 3> d = values(rows, c.direction);
+    const Vec3d direction =
+        c.gaze[0] ? rotate(normalize(Quatd{q[0], q[1], q[2], q[3]}), {0, 0, -1}) : Vec3d{d[0], d[1], d[2]};
+    if (c.gaze[0] ? is_rotation(q) : length(direction) > 0) {
+      sample.at = direction;
       sample.validity = is_tracked(rows, c) ? GazeValidity::ok : GazeValidity::lost;
       const std::string space = to_lower(rows.cell(c.space));
       if (!space.empty() && space != "view" && space != "head") {
@@ -279,7 +301,12 @@ RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
     raw.warnings.push_back(
         fmt::format("{}: {} rows repeat the sample of the row before; left out", file.path, repeats));
   }
-  declare_directions(raw, {table.headings[*c.gaze[0]].text + ", ...", Evidence::header}, GazeAxes::gl, Evidence::format,
+  const std::size_t first = c.gaze[0] ? *c.gaze[0] : *c.direction[0];
+  declare_directions(raw, {table.headings[first].text + ", ...", Evidence::header},
+                     axes == GazeAxes::automatic ? GazeAxes::gl : axes,
+                     !is_own_table                 ? Evidence::format
+                     : axes == GazeAxes::automatic ? Evidence::statistics
+                                                   : Evidence::option,
                      place);
   return raw;
 }

@@ -121,7 +121,7 @@ void add_convention_options(OptionSchema<GazeFileSettings>& schema) {
                "The log's x and y of the display's top left corner, such as 1920,0 on the right one of two monitors");
   schema.value("--axes", column(&GazeColumns::axes), choices<GazeAxes>(), Touch::gaze,
                "Axes of directions: gl looks along -z, unity left-handed along +z, sranipal along +z with x to the "
-               "left, cv along +z with y down; default: the format's own");
+               "left, cv along +z with y down, unreal along +x with z up; default: the format's own");
   schema.value("--frame", gaze_read(&GazeReadOptions::frame), choices<GazeFrame>(), Touch::gaze,
                "Which gaze is taken of a log that states several: head, directions from the head; scene-camera, places "
                "on the scene camera's picture; world, directions in the space of the head's poses");
