@@ -158,3 +158,8 @@ class _TemporaryFolder:
         folder = tempfile.TemporaryDirectory(prefix="gazetrace.")
         self.path = Path(folder.name)
         self._finalizer = weakref.finalize(self, folder.cleanup)
+
+
+def write_density(path, array):
+    """Writes a density as an EXR that the option `density` reads, for runs that are to be repeatable."""
+    write_gray_exr(Path(path), np.asarray(array))

@@ -137,7 +137,8 @@ def _plane(recording, axes, fixations):
         axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xlabel="azimuth [deg], right", ylabel="elevation [deg], up")
         return 1
     aspect = recording.numbers["picture"]["aspect"]
-    axes.set(xlim=(0, 1), ylim=(1, 0), aspect=aspect, xlabel="across the picture [%]", ylabel="down [%]")
+    seen = "screen" if recording.numbers["kind"] == "screen" else "picture"
+    axes.set(xlim=(0, 1), ylim=(1, 0), aspect=aspect, xlabel=f"across the {seen} [%]", ylabel="down [%]")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:.0f}"))
     axes.set_xticks([0, 0.25, 0.5, 0.75, 1])
@@ -174,7 +175,7 @@ def heat_map(recording, trial, begin, end, suffix):
     if values is None or not values.max() > 0:
         return None
     title = "Heat map" + (f", {trial}" if trial else "")
-    with drawing.figure(4.6, 0.9 + 3.9 * min(recording.numbers["picture"]["aspect"], 1.2)) as (fig, axes):
+    with drawing.figure(4.6, 1.3 + 3.9 * min(recording.numbers["picture"]["aspect"], 1.2)) as (fig, axes):
         aspect = _plane(recording, axes, fixations)
         levels = values.copy()
         levels[levels < values.max() / 9] = numpy.nan
@@ -206,7 +207,7 @@ def scanpath(recording, trial, begin, end, suffix):
             note += ", numbered in their order"
         if recording.numbers["picture"]:
             beside = int(((fixations.x < 0) | (fixations.x > 1) | (fixations.y < 0) | (fixations.y > 1)).sum())
-            note += f"; {beside} beside the picture are not shown" if beside else ""
+            note += f"; {beside} beside it are not shown" if beside else ""
         return Diagram("scanpath" + suffix, title, drawing.svg_of(fig, title), "places", note + ".")
 
 

@@ -103,7 +103,7 @@ class CompareTest(TestCase):
 
     def test_files_are_refused_as_by_the_program(self):
         """Two that were looked at in different places, or from which frames are missing, unless it is asked for."""
-        job = small_job(frames="1-2", fps=10)
+        job = small_job(frames="1-2", fps=10, sampling="regions")
         job.replace(output=[self.folder / "one/f.####.exr"]).run()
         job.replace(output=[self.folder / "other/f.####.exr"], gaze_at=(0.1, 0.5)).run()
         one, other = self.folder / "one/f.####.exr", self.folder / "other/f.####.exr"
