@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a camera sample costs, against the limit: the CPU time that the ray library alone needs for the very same rays.
 //   gazetrace_cost_per_sample Sponza.gltf sky.hdr [--size 1920x1080] [--spp 32] [--bounces 3] [--rounds 7]
-//       [--share 16] [--cone 0.15] [--all] [--eye X,Y,Z] [--target X,Y,Z] [--fov DEG]
+//       [--share 16] [--all] [--eye X,Y,Z] [--target X,Y,Z] [--fov DEG]
 // One thread; every `share`-th tile of the frame; rounds of both measurements interleaved; medians are printed.
 #include <fmt/core.h>
 

@@ -54,7 +54,7 @@ inline void PathKernel<kLayers>::shade_chunk(int vertex, const RayBatch& rays, c
     chunk.v[i] = work_.hits.v[k];
     chunk.t[i] = work_.hits.t[k];
     // The samples of a pixel average textures at full resolution, after a bounce, too: coarser levels there bias the
-    // mean, and were measured to save neither time nor noise.
+    // mean, and were measured to save no noise and a few per cent of the time (tests/benchmarks/book/sampling.md).
     chunk.cone_width[i] = chunk.cone_spread[i] = 0;
   }
   gather_triangles(scene, rays.time, chunk, count);
