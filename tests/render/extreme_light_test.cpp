@@ -166,7 +166,7 @@ TEST(ExtremeLight, PunctualLightsOverTheWholeRange) {
       PunctualLight light;
       const auto i = static_cast<float>(intensity);
       light.intensity = {i, i, i};
-      light.position_m = to_float({0, height, 0});
+      light.position_m = {0, height, 0};
       scene.lights = {light};
       // The view is so narrow that the light is straight above all of it.
       Camera camera = above(2 * height);
