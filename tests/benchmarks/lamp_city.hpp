@@ -59,7 +59,7 @@ inline Scene city(int lights, bool punctual) {
     if (punctual) {
       PunctualLight light;
       light.kind = i % 2 == 0 ? LightKind::point : LightKind::spot;
-      light.position_m = at;
+      light.position_m = to_double(at);
       light.intensity = color * 0.02F;
       light.direction = {random(-1, 1), -1, random(-1, 1)};
       scene.lights.push_back(light);
