@@ -32,9 +32,7 @@ FrameSettings frame_settings(const PipelineSettings& settings, const ColorPipeli
   frame.frames_per_second = static_cast<double>(settings.fps.numerator) / static_cast<double>(settings.fps.denominator);
   frame.display_curve = [&color](double exposure_ev) { return view_display_curve(color, {}, exposure_ev); };
   frame.trace.guides = frame.trace.guides || show_first_hits(settings.output.exr.aovs);
-  if (!settings.output.exr.pattern.empty()) {
-    frame.layers = layer_settings(settings.output.exr);
-  }
+  frame.layers = layer_settings(settings.output.exr);
   return frame;
 }
 
