@@ -53,7 +53,7 @@ class CameraPaths(harness.CliTest):
 
     def test_each_pose_is_a_frame(self):
         self.write("ten.chan", "".join(f"{1001 + i} {i} 0 0 0 0 0\n" for i in range(10)))
-        for rate in ("24", "24000/1001", "25", "30000/1001", "59.94", "60", "90", "7"):
+        for rate in ("24000/1001", "59.94", "90"):
             for arguments, first in (([], 1), (["--first-frame", "1001"], 1001), (["--first-frame", "1001", "--camera-keep-time"], 1001),
                                      (["--camera-keep-time"], 1001)):
                 frames = self.frames("--camera-path", "ten.chan", "--fps", rate, *arguments)
@@ -83,7 +83,7 @@ class CameraPaths(harness.CliTest):
         self.assertAlmostEqual(self.cameras("wide.gltf", "--camera", "0")[0]["ymag_m"], 1.40625)
         self.assertAlmostEqual(self.cameras("wide.gltf", "--camera", "1")[0]["yfov_deg"], math.degrees(2 * math.atan(4 / (16 / 9))))
         self.assertAlmostEqual(self.cameras("wide.gltf", "--camera", "1", "--yfov", "40")[0]["yfov_deg"], 40)
-        self.assertIn("width of 2.5 heights", self.run_ok("plan", "wide.gltf", "--size", "64x36").stderr)
+        self.assertIn("2.5 times as wide", self.run_ok("scene", "wide.gltf").stdout)
 
     def test_the_help_says_how_a_saved_path_is_read_again(self):
         text = " ".join(self.run_ok("plan", "--help").stdout.split())
