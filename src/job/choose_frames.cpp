@@ -82,8 +82,7 @@ std::vector<std::int32_t> fixation_frames(const JobSettings& job, const ViewInpu
     const double since_ns = static_cast<double>(t_ns) - static_cast<double>(begin_ns);
     return (since_ns * mapping.scale + static_cast<double>(mapping.offset_ns - job.start.ns)) * 1e-9 * fps;
   };
-  const std::int64_t last =
-      inputs.camera.is_static ? kMostPlannedFrames : frames_until(static_cast<double>(inputs.camera.end_ns), job);
+  const std::int64_t last = inputs.camera.is_static ? kMostPlannedFrames : frames_until(inputs.camera.end_ns, job);
   std::string whose;
   const EyeEvents events = events_for_frames(*inputs.log, whose);
   std::vector<std::int32_t> frames;
@@ -97,7 +96,8 @@ std::vector<std::int32_t> fixation_frames(const JobSettings& job, const ViewInpu
       ++outside;
     } else if (frame - 0.5 < begin || frame - 0.5 > end) {
       ++between;
-    } else if (const auto number = static_cast<std::int32_t>(frame); frames.empty() || frames.back() != number) {
+    } else if (const auto number = static_cast<std::int32_t>(frame) + job.first_frame - 1;
+               frames.empty() || frames.back() != number) {
       frames.push_back(number);
     }
   }

@@ -23,10 +23,10 @@ ResultViewing viewing_of(const SweepPlan& plan) {
   viewing.peak_cd_m2 = photometry.peak_cd_m2;
   viewing.contrast = photometry.contrast;
   viewing.ambient_lux = photometry.ambient_lux;
-  constexpr double kJod = 9.5;
+  constexpr double kLevelJod = 9.5;
   constexpr NoiseCut kCut{4, 0.1};
-  viewing.model_gain = model_gain_of_test(plan.tests.front(), kJod);
-  viewing.model_gain_cut_4_cpd = model_gain_of_test(plan.tests.front(), kJod, kCut);
+  viewing.model_gain = model_gain_of_test(plan.tests.front(), kLevelJod);
+  viewing.model_gain_cut_4_cpd = model_gain_of_test(plan.tests.front(), kLevelJod, kCut);
   return viewing;
 }
 

@@ -44,14 +44,21 @@ TEST(LookAt, DegenerateUpStillGivesARotation) {
 
 // A view 2.5 times as wide as high in a frame of 16:9 is as wide as the frame, and 2.5 / (16/9) times as high.
 TEST(Projection, ShowsAllThatItsCameraDoes) {
-  Projection flat{.kind = ProjectionKind::orthographic, .ymag_m = 3, .aspect = 2.5};
+  Projection flat;
+  flat.kind = ProjectionKind::orthographic;
+  flat.ymag_m = 3;
+  flat.aspect = 2.5;
   EXPECT_NEAR(fit_projection(flat, 1920, 1080).ymag_m, 3 * 1.40625, 1e-12);
   EXPECT_EQ(fit_projection(flat, 1920, 1080).aspect, 0);
   EXPECT_EQ(fit_projection(flat, 1000, 400).ymag_m, 3);
   EXPECT_EQ(fit_projection(flat, 1000, 100).ymag_m, 3);  // the frame shows more at the sides
-  const Projection wide{.yfov_rad = kPi / 2, .aspect = 2};
+  Projection wide;
+  wide.yfov_rad = kPi / 2;
+  wide.aspect = 2;
   EXPECT_NEAR(fit_projection(wide, 100, 100).yfov_rad, 2 * std::atan(2.0), 1e-12);
-  const Projection rounded{.yfov_rad = 1, .aspect = 1.7778};
+  Projection rounded;
+  rounded.yfov_rad = 1;
+  rounded.aspect = 1.7778;
   EXPECT_EQ(fit_projection(rounded, 1280, 720).yfov_rad, 1);
 }
 
