@@ -85,7 +85,7 @@ CameraKeys read_camera_tum(const CameraFile& file, const CameraReadOptions& /*op
     if (cells.size() != 8) {
       throw Error(ErrorKind::input, place, fmt::format("{} values where 8 belong", cells.size()), kForm);
     }
-    const double t_s = number_at(cells[0], place, kForm);
+    const double t_s = number_from(cells[0]).value_or(0);
     stamps_s.push_back(t_s);
     CameraKey key;
     key.row = lines.number();

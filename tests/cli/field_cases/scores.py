@@ -51,7 +51,7 @@ def version_beside_jod(bench):
     """a score of FovVideoVDP is in JOD, version 1.2 of its parameters"""
     picture = bench.scene("compare/a8.png")
     result = bench.run_program("compare", picture, bench.scene("compare/b8.png"), "--metrics", "fovvideovdp", "--gaze-at", "0.5,0.5",
-                               "--screen-px", "1920,1080", "--screen-cm", "60,33.75", "--screen-distance-cm", "60", "--json", "out.json",
+                               "--screen-px", "64,48", "--screen-cm", "64,48", "--screen-distance-cm", "60", "--json", "out.json",
                                "--csv", "out.csv")
     if result.returncode:
         return False, bench.last_line(result)

@@ -224,7 +224,7 @@ TEST_F(CameraFormats, CameraPathsOfNerfPrograms) {
   EXPECT_THAT(read("s.json", "{\"seconds\": 4, " + poses + "}").warnings.at(0), HasSubstr("`camera-fps` 0.5 keeps"));
   EXPECT_THAT(read("w.json", "{\"camera_type\": \"equirectangular\", " + poses + "}").warnings.at(0),
               HasSubstr("a straight, centred one is rendered"));
-  EXPECT_THAT(refusal("c.json", R"({"camera_path": [{"camera_to_world": [1, 0, 0]}]})"),
+  EXPECT_THAT(refusal("c.json", R"({"camera_path": [{"camera_to_world": [1, 0]}]})"),
               HasSubstr("c.json: camera_path[0]: has no camera_to_world of 4 rows"));
 
   // (0, 1, 5) becomes (0.33 + 0.5, 1.65 + 0.5, 0.5). The matrix of an upright camera, diag(1, -1, -1) in its own world,

@@ -321,7 +321,8 @@ TEST(PlanFrames, SettingsThatCannotBe) {
   settings.frames.clear();
   EXPECT_EQ(message_of(still(), nullptr, settings, ErrorKind::usage), "there is no frame to render; give `frames`");
   settings.frames = {0};
-  EXPECT_EQ(message_of(still(), nullptr, settings, ErrorKind::usage), "frames are numbered from 1; give `frames`");
+  EXPECT_EQ(message_of(still(), nullptr, settings, ErrorKind::usage),
+            "`frames`: frame 0 does not exist: frames are numbered from 1; name others, or change `first-frame`");
   settings.frames = {1};
   settings.gaze_latency_ns = -1;
   EXPECT_THAT(message_of(still(), nullptr, settings, ErrorKind::usage), HasSubstr("would look ahead"));
