@@ -224,7 +224,7 @@ TEST(Lights, KeepTheirIntensityUnderScaleAndFollowTheirNode) {
   EXPECT_EQ(point.name, "bulb");
   EXPECT_EQ(point.intensity, (Vec3f{8, 4, 2}));
   EXPECT_EQ(point.range_m, 3);
-  expect_near(to_double(point.position_m), {2, 2, 3}, 1e-6);
+  expect_near(point.position_m, {2, 2, 3}, 1e-6);
   const PunctualLight spot = find(LightKind::spot);
   expect_near(to_double(spot.direction), {-1, 0, 0}, 1e-6);
   EXPECT_NEAR(spot.cos_inner, std::cos(0.25), 1e-7);
