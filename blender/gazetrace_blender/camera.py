@@ -5,6 +5,7 @@ import math
 from dataclasses import dataclass
 
 import bpy
+import numpy as np
 from mathutils import Vector
 
 from .refusal import Refusal
@@ -49,6 +50,18 @@ def picture_size(scene: bpy.types.Scene) -> tuple[int, int]:
     )
 
 
+def crop_options(scene: bpy.types.Scene, width_px: int, height_px: int) -> dict[str, Value]:
+    """The render region, from the top left, rounded down as Blender does in single precision."""
+    render = scene.render
+    if not render.use_border:
+        return {}
+    left, right = (int(np.float32(part) * np.float32(width_px)) for part in (render.border_min_x, render.border_max_x))
+    low, high = (int(np.float32(part) * np.float32(height_px)) for part in (render.border_min_y, render.border_max_y))
+    if right <= left or high <= low:
+        raise Refusal("the render region is smaller than a pixel", "draw it larger, or switch Render Region off")
+    return {"crop": [left, height_px - high, right - left, high - low]}
+
+
 def projection(camera: bpy.types.Camera, width_px: int, height_px: int) -> Projection:
     """The projection of a camera in a picture of this size, by the rules of Blender's sensor fit.
 
@@ -79,8 +92,6 @@ def scene_camera(scene: bpy.types.Scene) -> bpy.types.Object:
         raise Refusal("the scene has no camera", "add one and make it the scene's camera")
     if camera.data.type not in ("PERSP", "ORTHO"):
         raise Refusal(f"camera '{camera.name}' is panoramic", "choose a perspective or an orthographic lens")
-    if scene.render.use_border:
-        raise Refusal("only a region of the picture is to be rendered", "switch Render Region off")
     if scene.render.use_multiview:
         raise Refusal("the scene is stereoscopic", "switch Stereoscopy off and render an eye at a time")
     return camera

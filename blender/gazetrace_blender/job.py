@@ -6,7 +6,7 @@ from pathlib import Path
 
 import bpy
 
-from .camera import Projection, lens_options, picture_size, projection, scene_camera
+from .camera import Projection, crop_options, lens_options, picture_size, projection, scene_camera
 from .export import export_scene, frame_kept, left_out
 from .frames import FrameRange, frame_options, frame_range
 from .refusal import Refusal
@@ -54,6 +54,7 @@ def write_job(context: bpy.types.Context) -> Job:
         "scene": scene_file.relative_to(blend.parent).as_posix(),
         "camera": camera_name,
         "size": f"{width_px}x{height_px}",
+        **crop_options(scene, width_px, height_px),
     }
     settings_file = blend.with_suffix(".gazetrace.toml")
     text = f"# Written by gazetrace's add-on for Blender from {blend.name}; it is written anew for every render.\n"

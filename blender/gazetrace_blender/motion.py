@@ -68,10 +68,10 @@ def animate(glb: Glb, matrices: Mapping[str, np.ndarray], frames: FrameRange) ->
 
 
 def scale_times(glb: Glb, factor: float, offset_s: float) -> None:
-    """Stretches and moves the keys that the exporter wrote."""
+    """Stretches and moves the keys that the exporter wrote; none comes before 0."""
     inputs = {s["input"] for animation in glb.document.get("animations", []) for s in animation["samplers"]}
     for accessor in inputs:
-        glb.floats(accessor)[:] = glb.floats(accessor) * np.float32(factor) + np.float32(offset_s)
+        glb.floats(accessor)[:] = np.maximum(glb.floats(accessor) * np.float32(factor) + np.float32(offset_s), 0)
         for bound in ("min", "max"):
             glb.document["accessors"][accessor][bound] = [float(getattr(glb.floats(accessor), bound)())]
 

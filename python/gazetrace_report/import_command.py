@@ -108,11 +108,8 @@ def moments(scene):
     from gazetrace_blender.frames import FrameRange
 
     class Take(FrameRange):
-        def baked(self):
-            return list(range(self.first, self.last + 1))
-
         def seconds(self, frame):
-            return float((frame - self.first + Fraction(1, 2)) / self.fps)
+            return float(max(frame - self.first + Fraction(1, 2), 0) / self.fps)
 
     base = Fraction(str(round(scene.render.fps_base, 6)))
     return Take(scene.frame_start, scene.frame_end, 1, scene.render.fps / base)

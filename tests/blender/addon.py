@@ -94,9 +94,9 @@ class Refusals(AddOnTest):
         self.scene.camera = None
         self.assert_refused("no camera")
 
-    def test_a_region_of_the_picture(self):
-        self.scene.render.use_border = True
-        self.assert_refused("region")
+    def test_a_region_without_a_pixel(self):
+        self.scene.render.use_border, self.scene.render.border_max_x = True, 0.01
+        self.assert_refused("region is smaller than a pixel")
 
     def test_frames_before_the_first(self):
         self.scene.frame_start = 0
@@ -190,6 +190,13 @@ class Settings(AddOnTest):
         told = " ".join(job.write_job(bpy.context).left_out)
         for words in ("spread is 60 degrees", "is seen by the camera", "stays as in the first frame"):
             self.assertIn(words, told)
+
+    def test_a_region_of_the_picture(self):
+        render = self.scene.render
+        render.use_border = True
+        render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.25, 0.7, 0.1, 0.5
+        self.assertIn("crop = [16, 18, 28, 15]", self.job_text())
+        self.plan()
 
 
 class Runs(AddOnTest):
@@ -389,7 +396,7 @@ class Bones(AddOnTest):
         scenes.key(moved, "value", 30, 1.0)
         self.scene.render.resolution_x, self.scene.render.resolution_y = 160, 90
         self.scene.render.fps_base = 1.25
-        self.further('sampling = "uniform"\nfilter = "none"\nbounces = 0\n')
+        self.further('sampling = "uniform"\nfilter = "none"\nbounces = 0\naccumulate = "off"\n')
         self.settings.samples = 64
         self.save()
         self.assertEqual(bpy.ops.gazetrace.render(), {"FINISHED"})

@@ -6,8 +6,8 @@ bpy. For each scene it prints one JSON object, and writes `SCENE.png` into the f
 
 cube   the file that Blender begins with, with the add-on as it begins, and pictures through the view
 room   a closed room under a scaled rectangle and a coloured disc
-shot   ten frames from 1001 under a sky with its sun: a camera that moves, a lens that is shifted, a panel that
-       moves
+shot   ten frames from 1001 under a sky with its sun: a camera that moves, a lens that is shifted, a region of the
+       picture, a panel that moves
 """
 
 import json
@@ -107,7 +107,7 @@ def room() -> None:
     disc = panel("disc", (1.9, 0.5, 1.2), 20, shape="DISK", size=0.4, color=(1, 0.5, 0.2))
     disc.rotation_euler = (0, math.pi / 2, 0)
     camera((1.7, -1.2, 1.3), (math.radians(80), 0, math.radians(50)), 24)
-    further(f'sampling = "uniform"\nfilter = "none"\ndiffuse = "lambert"\nbounces = {BOUNCES}\n')
+    further(f'sampling = "uniform"\nfilter = "none"\ndiffuse = "lambert"\nbounces = {BOUNCES}\naccumulate = "off"\n')
 
 
 def shot() -> None:
@@ -135,7 +135,10 @@ def shot() -> None:
     eye.data.shift_x, eye.data.shift_y = 0.08, -0.1
     scenes.key(eye, "location", 1000, (3, -5, 1.8))
     scenes.key(eye, "location", 1011, (3.6, -4.6, 1.8))
-    further(f'sampling = "uniform"\nfilter = "none"\ndiffuse = "lambert"\nbounces = {BOUNCES}\n')
+    render = scene.render
+    render.use_border = render.use_crop_to_border = True
+    render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.1, 0.85, 0.05, 0.9
+    further(f'sampling = "uniform"\nfilter = "none"\ndiffuse = "lambert"\nbounces = {BOUNCES}\naccumulate = "off"\n')
 
 
 SCENES = {"cube": cube, "room": room, "shot": shot}

@@ -47,7 +47,7 @@ def render_by_gazetrace(scene: bpy.types.Scene, folder: Path) -> dict[int, np.nd
     scene.gazetrace.filter = "none"
     scene.gazetrace.samples = SAMPLES
     further = bpy.data.texts.new("further")
-    further.write("bounces = 0\n")
+    further.write('bounces = 0\naccumulate = "off"\n')
     scene.gazetrace.further_settings = further
     bpy.ops.wm.save_as_mainfile(filepath=str(folder / "shot.blend"))
     if bpy.ops.gazetrace.render() != {"FINISHED"}:

@@ -6,6 +6,7 @@ happens inside is in tests/blender. Camera and framing are held against pictures
 """
 
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -13,6 +14,7 @@ import sys
 import unittest
 
 import harness
+from exr_reader import Exr
 
 SCRIPTS = harness.SOURCE / "tests" / "blender"
 # The allowed difference is half a pixel. What is measured is a few hundredths: sampling noise of both pictures.
@@ -39,6 +41,12 @@ def hosts():
 
 
 HOSTS = hosts()
+
+ABOVE = ["--env", "constant:1,1,1"]
+EYE = [*ABOVE, "--eye", "3,2,3", "--target", "0,0.5,0"]
+IMPORTS = {"lit.blend": ["--env", "none"], "lit.usdc": ["--env", "none"], "coloured.fbx": ABOVE, "coloured.obj": EYE, "bare.abc": ABOVE,
+           "bare.ply": EYE, "bare.stl": EYE}
+LOST = {"obj": ["without cameras"], "fbx": ["area lights"], "abc": ["without lights"], "ply": ["without cameras"]}
 
 
 @unittest.skipUnless(HOSTS, "neither Blender nor a Python with bpy is installed (GAZETRACE_BPY_PYTHON names one)")
@@ -81,10 +89,59 @@ class Blender(harness.CliTest):
                         self.assertLess(error, MOST_ERROR, result)
                         self.assertLess(abs(ratio - 1), 4 * error + model, result)
 
+    @unittest.skipUnless("bpy" in HOSTS, "no Python with bpy is installed")
+    def test_imports_show_what_the_same_scene_as_gltf_shows(self):
+        """Cameras are where they were, and a patch in the middle, with the edge of a texture, is as bright."""
+        self.inside("bpy", "files.py", str(self.folder))
+        environment = {"GAZETRACE_BPY_PYTHON": HOSTS["bpy"][0]}
+        for name, options in IMPORTS.items():
+            with self.subTest(name):
+                told = json.loads(self.run_ok("import", name, "-o", "i.glb", "--overwrite", "--json", environment=environment, alone=True).stdout)
+                for sentence in LOST.get(name.rpartition(".")[2], []):
+                    self.assertIn(sentence, " ".join(told["lost"]))
+                moves = "--eye" not in options
+                self.assertEqual((told["frames"], len(told["cameras"])), (5, 1) if moves else (1, 0))
+                same = f"{name.partition('.')[0]}.glb"
+                # Blender's own exporter has frame f at f / 24 s, and the import in the middle of the video's frame f.
+                start = ["--start", "20833333ns", "--camera-extrapolation", "hold"]
+                if moves:
+                    ours, theirs = self.cameras("i.glb"), self.cameras(same, *start)
+                    for a, b in zip(ours, theirs, strict=True):
+                        self.assertAlmostEqual(a["yfov_deg"], b["yfov_deg"], places=3)
+                        for x, y in zip(a["position_m"] + a["orientation_xyzw"], b["position_m"] + b["orientation_xyzw"]):
+                            self.assertAlmostEqual(x, y, delta=2e-4)
+                (a, noise_a), (b, noise_b) = self.patch("i.glb", *options), self.patch(same, *options, *start)
+                print(name, a, noise_a, b, noise_b)
+                self.assertGreater(a, 0.05)
+                self.assertLess(abs(a - b), 4 * math.hypot(noise_a, noise_b))
+
+    def cameras(self, scene, *options):
+        told = self.run_ok("plan", scene, "--size", "64x36", "--fps", "24", "--frames", "1-5", *options, "--json", "-").stdout
+        return [frame["camera"] for frame in json.loads(told)["frames"]]
+
+    def patch(self, scene, *options):
+        """The mean green light of a patch, and its standard error, by two renders."""
+        values = []
+        for seed in ("1", "2"):
+            self.run_ok("render", scene, "-o", "patch.exr", "--overwrite", "--size", "64x36", "--fps", "24", "--frames", "2", "--spp", "64",
+                        "--sampling", "uniform", "--filter", "none", "--diffuse", "lambert", "--seed", seed, *options)
+            green = Exr(self.folder / "patch.exr").channel("G")
+            values.append([value for row in green[10:26] for value in row[20:44]])
+        a, b = values
+        noise = math.sqrt(sum((x - y) ** 2 for x, y in zip(a, b))) / 2 / len(a)
+        return (sum(a) + sum(b)) / 2 / len(a), noise
+
     def test_the_add_on(self):
         for host in HOSTS:
             with self.subTest(host):
                 self.inside(host, "addon.py")
+
+
+class WithoutBlender(harness.CliTest):
+    def test_an_import_without_blender_says_what_to_install(self):
+        self.write("s.obj", b"v 0 0 0\n")
+        environment = {"PATH": os.defpath, "GAZETRACE_BPY_PYTHON": ""}
+        self.assert_refused(["import", "s.obj", "-o", "s.glb"], ["pip install bpy"], code=3, environment=environment, alone=True)
 
 
 if __name__ == "__main__":
