@@ -19,15 +19,16 @@ namespace gazetrace {
 
 namespace {
 
-// A camera far from the world's origin is traced in coordinates that count from a corner of the cell of this size that
-// it is in, since floats hold coordinates the finer the smaller they are: to 6e-5 m within a cell. Which cell follows
-// from the view alone, so that a frame has the same bits whatever was rendered before it.
-constexpr double kCell_m = 1024;
+// A camera this far from the world's origin is traced in coordinates that count from a corner of the cell that it is
+// in, since floats hold coordinates the finer the smaller they are: to 4e-6 m within a cell. Which cell follows from
+// the view alone, so that a frame has the same bits whatever was rendered before it.
+constexpr double kFar_m = 512;
+constexpr double kCell_m = 64;
 
 Vec3d nearest_corner(const Vec3d& p) {
   const auto corner = [](double x) { return std::round(x / kCell_m) * kCell_m; };
-  const Vec3d corners{corner(p.x), corner(p.y), corner(p.z)};
-  return is_finite(corners) ? corners : Vec3d{};
+  const bool is_far = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) > kFar_m;
+  return is_far && is_finite(p) ? Vec3d{corner(p.x), corner(p.y), corner(p.z)} : Vec3d{};
 }
 
 Vec3d clamped(const Vec3d& p, const Vec3d& low, const Vec3d& high) {

@@ -51,7 +51,7 @@ def _middle_of(bench, gltf, *options):
 def _said(bench, gltf, *words):
     """Whether the scene is drawn, with a warning that has these words, and refused under --strict."""
     path = bench.write("quad.gltf", json.dumps(gltf))
-    result, picture = bench.render(path, "--spp", "1", "--env", "none")
+    result, picture = bench.render(path, "--spp", "1", "--env", "none", "--frames", "1")
     report = bench.run_program("scene", path).stdout
     missing = [word for word in words if word not in report]
     strict, line = bench.refused(bench.run_program("scene", path, "--strict"), "strict")
