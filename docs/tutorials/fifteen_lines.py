@@ -2,7 +2,7 @@
 # %% [markdown]
 # # From a gaze log to a figure, in fifteen lines
 #
-# Load a log, detect what the eye did, render frames whose samples lie where it looked, compare them with uniform ones,
+# Load a log, take off its noise, detect what the eye did, render frames whose samples lie where it looked, compare them with uniform ones,
 # and plot. The log is a real recording that ships with gazetrace. Its viewer never saw this courtyard: the recording shows
 # what eyes do, not what this scene would make them do.
 
@@ -11,7 +11,7 @@ import gazetrace
 import matplotlib.pyplot as plt
 
 size, frames = (320, 180), range(1, 7)  # small: (64, 36), range(1, 3)
-log = gazetrace.read_gaze("gazelogs/tx300_left.csv")
+log = gazetrace.read_gaze("gazelogs/tx300_left.csv").process("median:samples=5")
 fixations = log.detect_events().fixations
 job = gazetrace.Job(scene="scenes/courtyard/courtyard.gltf", camera="walk", gaze=log, size=size, fps=10, frames=frames)
 foveated = list(job.render())

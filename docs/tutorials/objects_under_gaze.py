@@ -77,7 +77,7 @@ areas.head()
 # then it was on the sky.
 
 # %%
-events = log.detect_events().fixations
+events = log.process("median:samples=5").detect_events().fixations
 fixations = pandas.DataFrame({"onset": events.onset_s * 1000, "offset": events.offset_s * 1000,  # ms, from the video's begin
                               "frame": ((events.onset_s + events.offset_s) / 2 * 10).astype(int) + 1,
                               "x": events.u * outlines["display_px"][0], "y": events.v * outlines["display_px"][1]})

@@ -42,11 +42,14 @@ plt.show()
 # %% [markdown]
 # ## What the eye did
 #
-# `"auto"` picks a method that suits the recording; `gazetrace list event-methods` names all, each with its paper. The events
-# are a table.
+# `detect_events()` picks a method that suits the recording; `gazetrace list event-methods` names all, each with its paper. It
+# warns where the events are not to be relied on, and names what suits the recording better. Here noise of 0.3 degrees from
+# sample to sample makes 23 saccades for 11 fixations; a median of five samples takes most of it away. A study chooses one
+# such step for all participants. The events are a table.
 
 # %%
-events = left.detect_events("auto")
+quiet = [log.process("median:samples=5") for log in (left, right)]
+events = quiet[0].detect_events()
 events.to_pandas().groupby("movement").duration_ms.describe()[["count", "50%", "min", "max"]].round(0)
 
 # %% [markdown]
@@ -54,7 +57,7 @@ events.to_pandas().groupby("movement").duration_ms.describe()[["count", "50%", "
 # the right eye, which is detected by itself:
 
 # %%
-fixations, of_right = (log.detect_events("auto").fixations for log in (left, right))
+fixations, of_right = (log.detect_events().fixations for log in quiet)
 apart_ms = 1000 * np.abs(fixations.onset_s[:, None] - of_right.onset_s).min(axis=1)
 print(f"{len(fixations)} and {len(of_right)} fixations; median {np.median(apart_ms):.0f} ms, at most {apart_ms.max():.0f} ms")
 

@@ -42,6 +42,7 @@ spp = 64
 [measure]
 repeats = {repeats}
 metrics = ["relmse", "flip"]
+quality = ["flip=0.3"]
 """)
 results = gazetrace.sweep(plan, "out/sweep_tutorial", restart=True)
 

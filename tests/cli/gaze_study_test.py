@@ -157,9 +157,8 @@ class Study(harness.CliTest):
             if objects["objects"]:
                 x, y = int(96 * place["gaze_true"]["u"]), int(54 * place["gaze_true"]["v"])
                 around = {(pixels.get((x + i, y + j)) or {"node": None})["node"] for i in (-1, 0, 1) for j in (-1, 0, 1)}
-                if len(around) == 1:  # no border beside it
-                    self.assertEqual(around, {objects["objects"][0]["node"]})
-                    compared += 1
+                self.assertIn(objects["objects"][0]["node"], around)
+                compared += len(around) == 1  # no border beside it: there is no choice
         self.assertGreater(compared, 10)
         self.assert_refused(["gaze", "aois", *common], ["--aois", "--outlines"])
         self.assert_refused(["gaze", "aois", *common, "--outlines", "o.json"], ["o.json", "--overwrite"])
