@@ -12,6 +12,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 
 #include "core/image_io.hpp"
 #include "gazetrace/output.hpp"
@@ -415,12 +416,14 @@ TEST(ExrFrame, AFullDiskLeavesNothingUnderTheName) {
 TEST(ExrFrame, UnusableNames) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "taken.exr");
-  for (const std::string& path : {folder / "none/frame.exr", folder / "taken.exr"}) {
+  using Kinds = std::map<std::string, ErrorKind>;
+  for (const auto& [path, kind] :
+       Kinds{{folder / "none/frame.exr", ErrorKind::runtime}, {folder / "taken.exr", ErrorKind::input}}) {
     try {
       write_frame_exr(path, example_frame(4, 4), nullptr, example_header(), settings(ExrPixels::half, "zip"));
       FAIL() << path;
     } catch (const Error& e) {
-      EXPECT_EQ(e.kind(), ErrorKind::runtime);
+      EXPECT_EQ(e.kind(), kind) << path;
       EXPECT_THAT(e.what(), testing::StartsWith(path));
     }
   }
