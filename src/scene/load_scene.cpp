@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loads a Scene from a file: reads, checks, parses and converts it.
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <limits>
 #include <mutex>
@@ -91,13 +91,10 @@ void warn_of_coarse_vertices(const Scene& scene, Warnings& warnings) {
     }
   }
   if (parts > 0) {
-    std::array<char, 200> text{};
-    std::snprintf(
-        text.data(), text.size(),
-        "the vertices of %zu parts are so far from their own origin that the file holds them in steps of up to "
-        "%.2g m (mesh '%.60s'); put the distance into their nodes",
-        parts, coarsest_m, where.c_str());
-    warnings.emplace_back(text.data());
+    warnings.push_back(fmt::format(
+        "the vertices of {} parts are so far from their own origin that the file holds them in steps of up to {:.2g} m "
+        "(mesh '{:.60}'); put the distance into their nodes",
+        parts, coarsest_m, where));
   }
 }
 
