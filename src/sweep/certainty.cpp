@@ -161,8 +161,9 @@ void check_levels(const SweepPlan& plan, const SweepReference& reference, const 
                       "better can be told, and the levels are {:g}",
                       plan.scenes[reference.scene].name, spp, metric, *score, floor.gaze, fmt::join(levels, ", ")),
           fmt::format("about {:.0f} samples would do, which spp = {:.0f} in [reference] gives with its {} scramblings; "
-                      "spp = \"auto\" there finds them, and go-on = true measures all the same",
-                      rounded_up(needed), rounded_up(needed / static_cast<double>(scramblings)), scramblings));
+                      "{}go-on = true there measures all the same",
+                      rounded_up(needed), rounded_up(needed / static_cast<double>(scramblings)), scramblings,
+                      metric == kJod ? "spp = \"auto\" finds them, and " : ""));
     }
   }
 }
