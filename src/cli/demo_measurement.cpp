@@ -79,7 +79,8 @@ std::string measurement_of(const Job& job, const std::string& middle) {
   return fmt::format(
       "# Written by gazetrace demo: foveated beside uniform sampling of the same cost.\n"
       "title = \"My scene, my gaze: sampled where the eye looked, and everywhere\"\n\n[common]\nsize = \"{}x{}\"\n"
-      "frames = \"{}-{}\"\n{}\n[[scene]]\n{}\n[[gaze]]\n{}\n[grid]\nspp = [1, 2]\n\n[reference]\nspp = 128\ngo-on = true\n\n"
+      "frames = \"{}-{}\"\n{}\n[[scene]]\n{}\n[[gaze]]\n{}\n[grid]\nspp = [1, 2]\n\n[reference]\nspp = 128\ngo-on = "
+      "true\n\n"
       "[measure]\nrepeats = 3\nmetrics = [\"fovvideovdp\", \"relmse\"]\n",
       width, std::max(1, size.height * width / size.width), frame, frame + static_cast<int>(kMeasuredFrames) - 1,
       common, scene, gaze);
