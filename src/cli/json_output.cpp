@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 
 #include "cli/command.hpp"
 #include "gazetrace/output.hpp"
@@ -17,7 +18,9 @@ std::vector<std::string> named_beside(const CLI::App* app, std::vector<std::stri
   for (; app != nullptr; app = app->get_parent()) {
     for (const CLI::Option* option : app->get_options()) {
       for (const std::string& value : option->results()) {
-        const auto asked = std::find(outputs.begin(), outputs.end(), value);
+        const auto asked = std::find_if(outputs.begin(), outputs.end(), [&](const std::string& output) {
+          return std::filesystem::path(output).lexically_normal() == std::filesystem::path(value).lexically_normal();
+        });
         if (asked == outputs.end()) {
           names.push_back(value);
         } else {
