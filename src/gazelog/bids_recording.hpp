@@ -9,6 +9,7 @@
 
 #include "gazelog/bids_sidecars.hpp"
 #include "gazelog/gaze_format.hpp"
+#include "gazetrace/gaze_raw.hpp"
 
 namespace gazetrace {
 
@@ -58,5 +59,13 @@ StatedUnit stated_bids_unit(const Sidecars& sidecars, const BidsColumns& columns
 
 // The space of the positions; gaze-on-screen where none is stated.
 std::string bids_coordinate_system(const Sidecars& sidecars);
+
+// The origin of the positions; top_left where none is stated. Throws Error(input) for an origin that cannot be read.
+PositionOrigin bids_screen_origin(const Sidecars& events, const GazeReadOptions& options);
+bool states_screen_origin(const Sidecars& events);
+
+// Writes the size, distance and pixel density of the screen into the raw gaze, with warnings for values that are not
+// taken as they stand in the file.
+void read_bids_screen(const Sidecars& events, RawGaze& raw);
 
 }  // namespace gazetrace

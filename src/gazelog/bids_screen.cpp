@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gazelog/bids_screen.hpp"
+#include "gazelog/bids_recording.hpp"
 
 #include <fmt/format.h>
 

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <type_traits>
 #include <utility>
 
 #include "core/atomic_file.hpp"
+#include "core/enum_name.hpp"
 #include "core/text.hpp"
 #include "gazelog/json.hpp"
 #include "gazelog/read_support.hpp"
@@ -17,33 +18,9 @@
 namespace gazetrace {
 namespace {
 
-template <class Value, std::size_t N>
-using Names = std::array<std::pair<std::string_view, Value>, N>;
-
-constexpr Names<TimeUnit, 5> kTimeUnits{{{"auto", TimeUnit::automatic},
-                                         {"ns", TimeUnit::ns},
-                                         {"us", TimeUnit::us},
-                                         {"ms", TimeUnit::ms},
-                                         {"s", TimeUnit::s}}};
-constexpr Names<GazeAxes, 5> kAxes{{{"auto", GazeAxes::automatic},
-                                    {"gl", GazeAxes::gl},
-                                    {"unity", GazeAxes::unity},
-                                    {"sranipal", GazeAxes::sranipal},
-                                    {"cv", GazeAxes::cv}}};
-constexpr Names<PositionUnit, 10> kUnits{{{"auto", PositionUnit::automatic},
-                                          {"fraction", PositionUnit::fraction},
-                                          {"px", PositionUnit::px},
-                                          {"mm", PositionUnit::mm},
-                                          {"cm", PositionUnit::cm},
-                                          {"deg", PositionUnit::deg},
-                                          {"unit-vector", PositionUnit::unit_vector},
-                                          {"norm", PositionUnit::norm},
-                                          {"height", PositionUnit::height},
-                                          {"rad", PositionUnit::rad}}};
-constexpr Names<PositionOrigin, 4> kOrigins{{{"auto", PositionOrigin::automatic},
-                                             {"top-left", PositionOrigin::top_left},
-                                             {"bottom-left", PositionOrigin::bottom_left},
-                                             {"center", PositionOrigin::center}}};
+std::string_view to_string(TimeUnit unit) {
+  return name_of(unit, {"auto", "ns", "us", "ms", "s"});
+}
 
 // Every member of a map by its name. Saving, loading and merging all walk over this list.
 template <class Columns, class Visitor>
@@ -90,41 +67,27 @@ void visit(Columns& c, Visitor&& v) {
   v("valid_mask", c.valid_mask);
 }
 
+using Json = nlohmann::ordered_json;
+
+// Members that differ from their defaults.
 class Saver {
  public:
-  void operator()(const std::string& path, const std::string& text) {
-    if (!text.empty()) {
-      values.push_back({path, text, JsonValue::Kind::string, {}});
-    }
-  }
-  void operator()(const std::string& path, const std::vector<std::string>& list) {
-    if (!list.empty()) {
-      values.push_back({path, "", JsonValue::Kind::list, list});
-    }
-  }
+  void operator()(const std::string& path, const std::string& text) { put(path, text, !text.empty()); }
+  void operator()(const std::string& path, const std::vector<std::string>& list) { put(path, list, !list.empty()); }
   void operator()(const std::string& path, double value) {
-    if (value != 1) {
-      values.push_back({path, fmt::format("{}", value), JsonValue::Kind::number, {}});
-    }
+    put(path, Json::parse(fmt::format("{}", value)), value != 1);
   }
-  void operator()(const std::string& path, std::int64_t value) {
-    if (value != 0) {
-      values.push_back({path, std::to_string(value), JsonValue::Kind::number, {}});
-    }
-  }
-  void operator()(const std::string& path, TimeUnit unit) { named(path, kTimeUnits, unit); }
-  void operator()(const std::string& path, PositionUnit unit) { named(path, kUnits, unit); }
-  void operator()(const std::string& path, PositionOrigin origin) { named(path, kOrigins, origin); }
-  void operator()(const std::string& path, GazeAxes axes) { named(path, kAxes, axes); }
-  std::vector<JsonValue> values;
+  void operator()(const std::string& path, std::int64_t value) { put(path, value, value != 0); }
+  template <class E>
+  requires std::is_enum_v<E>
+  void operator()(const std::string& path, E value) { put(path, to_string(value), value != E::automatic); }
+  Json root = Json::object();
 
  private:
-  template <class Value, std::size_t N>
-  void named(const std::string& path, const Names<Value, N>& names, Value value) {
-    for (const auto& [name, of] : names) {
-      if (of == value && name != "auto") {
-        values.push_back({path, std::string(name), JsonValue::Kind::string, {}});
-      }
+  void put(std::string path, const Json& value, bool is_set) {
+    if (is_set) {
+      std::replace(path.begin(), path.end(), '.', '/');
+      root[Json::json_pointer("/" + path)] = value;
     }
   }
 };
@@ -152,10 +115,22 @@ class Loader {
       fail(path, text, "a whole number");
     }
   }
-  void operator()(const std::string& path, TimeUnit& unit) { named(path, kTimeUnits, unit); }
-  void operator()(const std::string& path, PositionUnit& unit) { named(path, kUnits, unit); }
-  void operator()(const std::string& path, PositionOrigin& origin) { named(path, kOrigins, origin); }
-  void operator()(const std::string& path, GazeAxes& axes) { named(path, kAxes, axes); }
+  template <class E>
+  requires std::is_enum_v<E>
+  void operator()(const std::string& path, E& value) {
+    const std::string text = take(path);
+    std::vector<std::string> all;
+    for (int i = 0; !to_string(static_cast<E>(i)).empty(); ++i) {
+      all.emplace_back(to_string(static_cast<E>(i)));
+      if (all.back() == text) {
+        value = static_cast<E>(i);
+        return;
+      }
+    }
+    if (!text.empty()) {
+      throw Error(ErrorKind::input, place_, unknown_name_message("value of '" + path + "'", text, all));
+    }
+  }
   std::vector<std::string> known;
 
  private:
@@ -166,22 +141,6 @@ class Loader {
   [[noreturn]] void fail(const std::string& path, const std::string& text, std::string_view wanted) const {
     throw Error(ErrorKind::input, place_, fmt::format("'{}' of '{}' is not {}", text, path, wanted));
   }
-  template <class Value, std::size_t N>
-  void named(const std::string& path, const Names<Value, N>& names, Value& value) {
-    const std::string text = take(path);
-    std::vector<std::string> all;
-    for (const auto& [name, of] : names) {
-      all.emplace_back(name);
-      if (name == text) {
-        value = of;
-        return;
-      }
-    }
-    if (!text.empty()) {
-      throw Error(ErrorKind::input, place_, unknown_name_message("value of '" + path + "'", text, all));
-    }
-  }
-
   const JsonLeaves& json_;
   std::string place_;
 };
@@ -208,7 +167,7 @@ GazeColumns load_gaze_columns(const std::string& path) {
 void save_gaze_columns(const GazeColumns& columns, const std::string& path) {
   Saver saver;
   visit(columns, saver);
-  const std::string text = json_text(saver.values);
+  const std::string text = saver.root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   write_bytes_atomically(path, std::as_bytes(std::span(text)));
 }
 

@@ -138,7 +138,7 @@ class Finder {
 using std::string_view_literals::operator""sv;
 constexpr std::array kTime{
     "t"sv, "time"sv, "timestamp"sv, "recordingtimestamp"sv, "gazetimestamp"sv, "trackingtimestamp"sv};
-constexpr std::array kValidity{"valid"sv, "validity"sv, "isvalid"sv};
+constexpr std::array kValidity{"valid"sv, "validity"sv, "isvalid"sv, "status"sv, "trackingstatus"sv};
 constexpr std::array kConfidence{"confidence"sv, "conf"sv};
 constexpr std::array kPupil{"pupil"sv, "pupilsize"sv, "pupildiameter"sv, "pupilmeasure1"sv};
 constexpr std::array kEye{"eye"sv, "recordedeye"sv};

@@ -8,7 +8,6 @@
 
 #include "core/statistics.hpp"
 #include "gazelog/judge.hpp"
-#include "gazelog/recording_geometry.hpp"
 #include "gazelog/row_samples.hpp"
 #include "gazelog/units.hpp"
 

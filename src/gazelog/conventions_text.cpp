@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gazelog/conventions_text.hpp"
+#include "gazelog/row_samples.hpp"
 
 #include <fmt/format.h>
 

@@ -14,6 +14,7 @@
 #include "core/nan.hpp"
 #include "core/statistics.hpp"
 #include "gazelog/screen_angles.hpp"
+#include "gazelog/stamps.hpp"
 
 namespace gazetrace {
 namespace {
@@ -189,22 +190,6 @@ GazeSample missing_sample(std::int64_t t_ns, std::int64_t row, GazeKind kind) {
   return sample;
 }
 
-// One sample for each time. The memory of the rows is given back.
-void group_rows(GazeLog& log) {
-  std::size_t times = log.samples.empty() ? 0 : 1;
-  for (std::size_t i = 1; i < log.samples.size(); ++i) {
-    times += log.samples[i].t_ns != log.samples[i - 1].t_ns ? 1 : 0;
-  }
-  log.eyes.reserve(times);
-  RowGrouper grouper(log);
-  for (std::size_t i = 0; i < log.samples.size(); ++i) {
-    const GazeSample row = log.samples[i];  // a copy: the sample of an earlier time may take its place
-    grouper.add(row);
-  }
-  grouper.finish();
-  log.samples.shrink_to_fit();
-}
-
 struct EyeQuality {
   std::size_t usable = 0;
   double step = 0;  // the median of the squared steps between neighbours
@@ -278,11 +263,15 @@ void take_mean(GazeSample& sample, const BothEyes& eyes, const Vec2d& left, cons
   sample.pupil = mean_or_known(eyes.left.pupil, eyes.right.pupil);
 }
 
-// `preferred` is cyclopean for the mean. Returns how many times one eye stood in.
-std::size_t join_eyes(GazeLog& log, const AnglePlane& plane, Eye preferred) {
+struct JoinedTimes {
+  std::size_t alone = 0, both = 0;  // at which one eye stood in, or both were seen
+};
+
+// `preferred` is cyclopean for the mean.
+JoinedTimes join_eyes(GazeLog& log, const AnglePlane& plane, Eye preferred) {
   RunningOffset offset(log, plane);
   ShortAbsences short_absences(log, plane);
-  std::size_t alone = 0;
+  JoinedTimes times;
   for (std::size_t i = 0; i < log.samples.size(); ++i) {
     GazeSample& sample = log.samples[i];
     const BothEyes& eyes = log.eyes[i];
@@ -290,6 +279,7 @@ std::size_t join_eyes(GazeLog& log, const AnglePlane& plane, Eye preferred) {
     const bool right = is_usable(eyes.right.validity);
     sample.eye = preferred;
     if (left && right) {
+      ++times.both;
       const Vec2d left_angles = plane.angles(eyes.left.at);
       const Vec2d right_angles = plane.angles(eyes.right.at);
       offset.add(left_angles - right_angles, sample.t_ns);
@@ -308,7 +298,7 @@ std::size_t join_eyes(GazeLog& log, const AnglePlane& plane, Eye preferred) {
     if (!left && !right) {
       continue;
     }
-    ++alone;
+    ++times.alone;
     const Eye seen = use_left ? Eye::left : Eye::right;
     const double share = seen == preferred ? 0 : preferred == Eye::cyclopean ? 0.5 : 1.0;
     const double sign = seen == Eye::left ? -1.0 : 1.0;  // left minus right is taken from the left eye
@@ -318,7 +308,7 @@ std::size_t join_eyes(GazeLog& log, const AnglePlane& plane, Eye preferred) {
       plane.place({at.x + sign * share * apart.x, at.y + sign * share * apart.y}, sample);
     }
   }
-  return alone;
+  return times;
 }
 
 std::optional<double> great_disparity_deg(const GazeLog& log, const AnglePlane& plane) {
@@ -382,56 +372,51 @@ ChosenEye chosen_eye(const GazeLog& log) {
   return chosen;
 }
 
+RowGrouper::RowGrouper(GazeLog& log, bool has_several, std::size_t times) : log_(log), has_several_(has_several) {
+  log.samples.reserve(times);
+  log.eyes.reserve(has_several ? times : 0);
+}
+
 void RowGrouper::add(const GazeSample& row) {
-  if (!is_open_ || row.t_ns != first_.t_ns) {
+  if (first_ && row.t_ns != first_->t_ns) {
     close();
-    first_ = row;
-    own_.reset();
-    eyes_ = {};
-    is_open_ = true;
   }
-  if (row.eye == Eye::cyclopean) {
-    own_ = row;
-  } else {
-    (row.eye == Eye::left ? eyes_.left : eyes_.right) = eye_gaze(row, log_.kind);
+  std::optional<GazeSample>& of_eye = of_eye_[static_cast<std::size_t>(row.eye)];
+  if (of_eye) {
+    GazeOrder& order = log_.order;
+    if (order.duplicates++ == 0) {
+      order.first_duplicate_row = row.row;
+      order.first_duplicate_ns = row.t_ns;
+      order.row_repeated = of_eye->row;
+    }
+    const auto is_same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+    const EyeGaze a = eye_gaze(*of_eye, log_.kind);
+    const EyeGaze b = eye_gaze(row, log_.kind);
+    order.identical_duplicates += is_same(a.at.x, b.at.x) && is_same(a.at.y, b.at.y) && is_same(a.at.z, b.at.z) ? 1 : 0;
   }
+  first_ = first_ && first_->eye != row.eye ? *first_ : row;
+  of_eye = row;
 }
 
 void RowGrouper::close() {
-  if (is_open_) {
-    const GazeSample joined = own_ ? *own_ : missing_sample(first_.t_ns, first_.row, log_.kind);
-    if (count_ < log_.samples.size()) {
-      log_.samples[count_] = joined;
-    } else {
-      log_.samples.push_back(joined);
-    }
-    ++count_;
-    log_.eyes.push_back(eyes_);
+  const std::optional<GazeSample>& own = of_eye_[static_cast<std::size_t>(Eye::cyclopean)];
+  if (has_several_) {
+    log_.samples.push_back(own ? *own : missing_sample(first_->t_ns, first_->row, log_.kind));
+    const auto gaze = [&](Eye eye) {
+      const auto& sample = of_eye_[static_cast<std::size_t>(eye)];
+      return sample ? eye_gaze(*sample, log_.kind) : EyeGaze{};
+    };
+    log_.eyes.push_back({gaze(Eye::left), gaze(Eye::right)});
+  } else {
+    log_.samples.push_back(*first_);
   }
-  is_open_ = false;
+  of_eye_ = {};
+  first_.reset();
 }
 
-void RowGrouper::finish() {
+void RowGrouper::finish(UnorderedPolicy policy) {
   close();
-  log_.samples.resize(count_);
-}
-
-void choose_eyes(GazeLog& log) {
-  RowsOfEyes rows;
-  for (const GazeSample& sample : log.samples) {
-    ++rows.of_eye[static_cast<std::size_t>(sample.eye)];
-  }
-  check_eye_choice(log, rows);
-  if (rows.kinds() < 2) {
-    note_taken(log,
-               rows.own() > 0    ? TakenEye::combined
-               : rows.left() > 0 ? TakenEye::left
-                                 : TakenEye::right,
-               Evidence::format);
-    return;  // one eye, or one that stands for both
-  }
-  group_rows(log);
-  choose_grouped_eyes(log, rows);
+  refuse_duplicates(policy, log_);
 }
 
 void check_eye_choice(const GazeLog& log, const RowsOfEyes& rows) {
@@ -441,7 +426,15 @@ void check_eye_choice(const GazeLog& log, const RowsOfEyes& rows) {
   }
 }
 
-void choose_grouped_eyes(GazeLog& log, const RowsOfEyes& rows) {
+void choose_eyes(GazeLog& log, const RowsOfEyes& rows) {
+  if (rows.kinds() < 2) {  // one eye, or one that stands for both
+    note_taken(log,
+               rows.own() > 0    ? TakenEye::combined
+               : rows.left() > 0 ? TakenEye::left
+                                 : TakenEye::right,
+               Evidence::format);
+    return;
+  }
   const EyeChoice choice = log.conventions.eye;
   const AnglePlane plane(log);
   const Evidence evidence = choice == EyeChoice::automatic ? Evidence::format : Evidence::option;
@@ -466,13 +459,21 @@ void choose_grouped_eyes(GazeLog& log, const RowsOfEyes& rows) {
       warn_of_disparity(log, *disparity, preferred);
     }
   }
-  const std::size_t alone = join_eyes(log, plane, preferred);
+  const JoinedTimes joined = join_eyes(log, plane, preferred);
+  const bool take_turns = joined.both == 0 && joined.alone > 0;
   note_taken(log, preferred == Eye::cyclopean ? TakenEye::mean : taken_of(preferred), evidence, false,
-             plane.knows_angles() ? "in angle" : "in places: angles are not known");
-  if (preferred == Eye::cyclopean) {
+             take_turns             ? "of the one that was recorded: the eyes take turns and are never seen at once"
+             : plane.knows_angles() ? "in angle"
+                                    : "in places: angles are not known");
+  if (take_turns) {
+    log.warnings.push_back(fmt::format(
+        "{}: the recorded eye changes: the eyes are never seen at once, and the gaze is that of the one that is there; "
+        "`gaze-eye` left or right takes one",
+        log.source));
+  } else if (preferred == Eye::cyclopean) {
     log.warnings.push_back(
         fmt::format("{}: rows of several eyes merged to their mean: {} times, {} of them with one usable eye only",
-                    log.source, log.samples.size(), alone));
+                    log.source, log.samples.size(), joined.alone));
   }
 }
 

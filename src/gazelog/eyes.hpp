@@ -10,11 +10,6 @@
 
 namespace gazetrace {
 
-// Makes one gaze of the rows of each time, as `log.conventions.eye` says, keeps both eyes in `log.eyes`, and notes in
-// `log.conventions.eye_taken` which gaze was taken. The rows must be in order, with at most one row of each eye at a
-// time. Throws Error(usage) for an eye that the log does not have.
-void choose_eyes(GazeLog& log);
-
 // How many rows there are of each eye.
 struct RowsOfEyes {
   std::array<std::size_t, 3> of_eye{};  // in the order of Eye
@@ -26,28 +21,30 @@ struct RowsOfEyes {
   }
 };
 
-// The steps of choose_eyes, for logs whose rows are grouped while they are made, so that a long log of several eyes
-// never holds a sample for each row.
+// Throws Error(usage) for an eye that is chosen and that the log does not have.
 void check_eye_choice(const GazeLog& log, const RowsOfEyes& rows);
-// Makes one sample of the rows of each time, which is the log's own combined gaze where it has one, with both eyes
-// beside it. The rows come in order; `log.samples` may be those rows themselves, and is complete after `finish`.
+
+// Makes one sample of the rows of each time, which come in order: of several eyes the log's own combined gaze where it
+// has one, with both eyes beside it in `log.eyes`. Of rows of one eye at one time the last one stays. So a long log
+// never holds a sample for each row.
 class RowGrouper {
  public:
-  explicit RowGrouper(GazeLog& log) : log_(log) {}
+  RowGrouper(GazeLog& log, bool has_several, std::size_t times);
   void add(const GazeSample& row);
-  void finish();
+  void finish(UnorderedPolicy policy);
 
  private:
   void close();
 
   GazeLog& log_;
-  std::size_t count_ = 0;  // times that are done
-  bool is_open_ = false;
-  GazeSample first_;
-  std::optional<GazeSample> own_;
-  BothEyes eyes_;
+  bool has_several_;
+  std::array<std::optional<GazeSample>, 3> of_eye_;  // at the time of `first_`
+  std::optional<GazeSample> first_;
 };
-void choose_grouped_eyes(GazeLog& log, const RowsOfEyes& rows);
+
+// Makes one gaze of both eyes, as `log.conventions.eye` says, and notes in `log.conventions.eye_taken` which gaze was
+// taken.
+void choose_eyes(GazeLog& log, const RowsOfEyes& rows);
 
 // How the samples of a log with both eyes relate to one of them.
 struct ChosenEye {

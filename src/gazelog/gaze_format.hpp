@@ -31,4 +31,13 @@ inline std::string_view head_of(const GazeFile& file, std::size_t bytes = 65536)
   return std::string_view(file.text).substr(0, bytes);
 }
 
+inline std::string_view first_line_of(const GazeFile& file) {
+  return head_of(file).substr(0, file.text.find('\n'));
+}
+// Whether a text has a word, for sniffers that ask for several.
+struct WordsIn {
+  std::string_view text;
+  bool operator()(std::string_view word) const { return text.find(word) != std::string_view::npos; }
+};
+
 }  // namespace gazetrace

@@ -162,29 +162,4 @@ std::vector<std::string> JsonLeaves::texts(std::string_view path) const {
   }
 }
 
-std::string json_text(const std::vector<JsonValue>& values) {
-  Json root = Json::object();
-  for (const JsonValue& value : values) {
-    Json* at = &root;
-    std::string_view path = value.path;
-    for (std::size_t dot = path.find('.'); dot != std::string_view::npos; dot = path.find('.')) {
-      at = &(*at)[std::string(path.substr(0, dot))];
-      path.remove_prefix(dot + 1);
-    }
-    Json& target = (*at)[std::string(path)];
-    switch (value.kind) {
-      case JsonValue::Kind::string:
-        target = value.text;
-        break;
-      case JsonValue::Kind::number:
-        target = Json::parse(value.text, nullptr, false);
-        break;
-      case JsonValue::Kind::list:
-        target = value.list;
-        break;
-    }
-  }
-  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
 }  // namespace gazetrace

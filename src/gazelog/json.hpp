@@ -37,13 +37,4 @@ class JsonLeaves {
   std::vector<JsonLeaf> leaves_;
 };
 
-// Makes an object from paths and texts, in this order; it has no arrays.
-struct JsonValue {
-  std::string path;
-  std::string text;
-  enum class Kind : std::uint8_t { string, number, list } kind = Kind::string;
-  std::vector<std::string> list;
-};
-std::string json_text(const std::vector<JsonValue>& values);
-
 }  // namespace gazetrace

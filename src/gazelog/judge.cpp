@@ -69,6 +69,7 @@ class Judge {
         places();
         scale();
       }
+      zeros();
     } else if (c_.form == PlaceForm::vector) {
       directions();
     }
@@ -157,6 +158,30 @@ class Judge {
                        percent(first_quarter)),
            "another `unit`, or `origin` top-left"},
           c_.unit.evidence == Evidence::option ? Evidence::option : c_.origin.evidence);
+    }
+  }
+
+  // Zeros in both axes that count as good, as loggers write what they do not know.
+  void zeros() {
+    const bool is_known = std::any_of(raw_.faults.begin(), raw_.faults.end(),
+                                      [](const RawFault& fault) { return fault.code == "validity"; });
+    if (c_.zero_is_missing || is_known) {
+      return;
+    }
+    std::size_t zeros = 0;  // counted from the corner of the display
+    for (std::size_t i = 0; i < raw_.rows.size(); ++i) {
+      const Vec2d corner = corner_of(raw_, c_, i);
+      const Vec3d at = raw_.rows.at(i);
+      zeros += at.x == corner.x && at.y == corner.y && is_usable(raw_.rows[i].validity) ? 1 : 0;
+    }
+    // From the center straight ahead is a place like any other: zeros are missing values only where there are many.
+    const std::size_t rows_for_one = c_.origin.value == PositionOrigin::center ? 200 : 2000;
+    if (zeros >= 3 && zeros < raw_.rows.size() && zeros * rows_for_one >= raw_.rows.size()) {
+      add({"zero-missing",
+           fmt::format("{} of {} rows are exactly at (0, 0) and count as good: missing values written as zeros", zeros,
+                       raw_.rows.size()),
+           "statistics: noise never gives exact zeros in both axes that often", "`missing-value` 0"},
+          c_.missing_value ? Evidence::option : Evidence::header);
     }
   }
 

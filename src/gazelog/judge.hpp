@@ -2,6 +2,8 @@
 // Whether a reading of a file makes sense of an eye. The importer, the doctor, `plan` and `render` ask it alike.
 #pragma once
 
+#include <optional>
+
 #include "gazelog/eye_motion.hpp"
 #include "gazetrace/gaze_raw.hpp"
 
@@ -29,5 +31,13 @@ std::optional<ReadingDoubt> doubt_position_unit(const RawGaze& raw, const Conven
 // What a log without samples but with events or a bare refusal says of itself: throws Error(input) with the question,
 // its figures and the options that answer it.
 [[noreturn]] void refuse_doubt(const RawGaze& raw, const ReadingDoubt& doubt, const GazeReadOptions& options);
+
+// Takes the size of the display that holds for the rows that are read; where it changes between them, adds a fault.
+void settle_display(RawGaze& raw);
+
+// The display by which positions are converted: what the log states, overruled by what the user gave, with a warning
+// where they differ. What the user gave becomes the geometry of the recording, `c.recording_geometry`.
+std::optional<Concluded<DisplayGeometry>> conversion_display(const RawGaze& raw, const GazeReadOptions& options,
+                                                             Conventions& c);
 
 }  // namespace gazetrace

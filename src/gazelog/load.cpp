@@ -7,18 +7,13 @@
 
 #include "core/enum_name.hpp"
 #include "core/text.hpp"
-#include "gazelog/decimal_comma.hpp"
 #include "gazelog/event_table.hpp"
-#include "gazelog/foreign_file.hpp"
 #include "gazelog/gaze_format.hpp"
 #include "gazelog/judge.hpp"
 #include "gazelog/log_file.hpp"
-#include "gazelog/mending.hpp"
 #include "gazelog/read_support.hpp"
-#include "gazelog/recording_geometry.hpp"
 #include "gazelog/recordings.hpp"
 #include "gazelog/stamps.hpp"
-#include "gazelog/vector_cells.hpp"
 #include "gazetrace/gaze_raw.hpp"
 
 namespace gazetrace {

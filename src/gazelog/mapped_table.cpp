@@ -69,7 +69,6 @@ class RowReader {
   [[nodiscard]] const ValidityTally& tally() const { return tally_; }
   std::size_t repeated_headers = 0;
   std::size_t repeated_frames = 0;
-  std::size_t zero_pairs = 0;  // rows at exactly (0, 0) that state no validity
 
   [[nodiscard]] const OtherSensors& others() const { return others_; }
   std::size_t messages = 0;
@@ -151,7 +150,6 @@ class RowReader {
     if (missing && is_usable(sample.validity)) {
       sample.validity = GazeValidity::lost;
     }
-    zero_pairs += zero && !missing && !source.validity ? 1 : 0;
     if (kind == GazeKind::direction) {
       sample.at = missing ? Vec3d{kNan, kNan, kNan} : Vec3d{x, y, z};
     } else {
@@ -226,19 +224,13 @@ std::string place_of_header(const RawGaze& raw, const DelimitedTable& table) {
 }
 
 void add_row_warnings(RawGaze& raw, const RowReader& rows, const ColumnPlan& plan, const DelimitedTable& table) {
-  const std::size_t count = raw.rows.size();
   if (rows.repeated_headers > 0) {
     raw.warnings.push_back(
-        fmt::format("{}: the header is repeated {} times; skipped", raw.source, rows.repeated_headers));
+        fmt::format("{}: rows that repeat the header are skipped: {}", raw.source, rows.repeated_headers));
   }
   if (rows.repeated_frames > 0) {
     raw.warnings.push_back(fmt::format("{}: {} rows repeat the sample counter '{}' of the row before; dropped",
                                        raw.source, rows.repeated_frames, table.headings[*plan.frame].text));
-  }
-  if (rows.zero_pairs * 20 > count) {
-    raw.warnings.push_back(
-        fmt::format("{}: {} of {} positions are exactly (0, 0): missing values written as zero? Name a validity column",
-                    raw.source, rows.zero_pairs, count));
   }
   if (rows.messages > 0) {
     add_note(raw, "messages", std::to_string(rows.messages), Evidence::header, "rows of a time and a text");
@@ -297,7 +289,9 @@ void declare_positions(RawGaze& raw, const ColumnPlan& plan, const GazeFile& fil
                   plan.unit_evidence == Evidence::option ? declared : plan.unit_evidence, names,
                   // A log that names the state of each sample has stated its validity itself.
                   style == ValidityStyle::names && plan.sources.front().validity.has_value(),
-                  is_default ? Evidence::format : declared},
+                  !is_default ? declared
+                  : defined   ? Evidence::format
+                              : Evidence::header},
                  place);
   raw.directions_grow_up = true;
   const std::string x_name = letters_and_digits(table.headings[plan.sources.front().x].name);

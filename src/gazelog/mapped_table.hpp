@@ -2,6 +2,9 @@
 // A table whose columns are declared or found by header: the generic format, gazetrace CSV, and presets.
 #pragma once
 
+#include <string>
+#include <tuple>
+
 #include "gazelog/columns.hpp"
 #include "gazelog/validity.hpp"
 
@@ -34,6 +37,11 @@ int time_exponent_by_statistics(const GazeFile& file, const DelimitedTable& tabl
 // a preset merged with what the user declared, and `evidence` says where the preset's part comes from.
 RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, const GazeColumns& columns,
                           ValidityStyle style, Evidence evidence = Evidence::option);
+
+// The names of three columns: "gaze_" -> gaze_x, gaze_y, gaze_z.
+inline std::tuple<std::string, std::string, std::string> xyz(const std::string& stem) {
+  return {stem + "x", stem + "y", stem + "z"};
+}
 
 // Reads a format that is a table with its own columns: what the user declared overrides `preset`.
 RawGaze read_preset(const GazeFile& file, const DelimitedTable& table, const GazeReadOptions& options,

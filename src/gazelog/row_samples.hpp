@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "gazetrace/gaze_raw.hpp"
 
@@ -60,5 +61,9 @@ class RowSamples {
   const Conventions& c_;
   std::optional<ToFractions> to_fractions_;  // of positions
 };
+
+// The conclusions and their evidence in words for people: about the time, other facts of the file, the places, and the
+// eye. These words are never parsed again.
+std::vector<GazeFact> facts_in_words(const RawGaze& raw, const Conventions& conventions);
 
 }  // namespace gazetrace

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -16,21 +17,12 @@
 namespace gazetrace {
 namespace {
 
-std::string place_of(const GazeLog& log, std::int64_t row) {
-  return fmt::format("{}:{}", log.source, row);
-}
-
 bool same(double x, double y) {
   return x == y || (std::isnan(x) && std::isnan(y));
 }
 
 bool is_same_place(const Vec3d& a, const Vec3d& b) {
   return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z);
-}
-
-bool is_same_position(const GazeSample& a, const GazeSample& b) {
-  return same(a.u, b.u) && same(a.v, b.v) && same(a.direction.x, b.direction.x) && same(a.direction.y, b.direction.y) &&
-         same(a.direction.z, b.direction.z);
 }
 
 }  // namespace
@@ -50,82 +42,60 @@ bool loses_much(const GazeOrder& order) {
   return static_cast<double>(lost) > kFewPerCent * static_cast<double>(order.rows);
 }
 
-void order_samples(GazeLog& log, UnorderedPolicy policy) {
+std::vector<std::size_t> rows_by_time(const RawRows& rows, UnorderedPolicy policy, GazeLog& log) {
   GazeOrder& order = log.order;
-  order.rows = log.samples.size();
-  for (std::size_t i = 1; i < log.samples.size(); ++i) {
-    const GazeSample& before = log.samples[i - 1];
-    const GazeSample& sample = log.samples[i];
-    if (sample.t_ns >= before.t_ns) {
+  order.rows = rows.size();
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const std::int64_t before_ns = rows.t_ns(i - 1);
+    const std::int64_t t_ns = rows.t_ns(i);
+    if (t_ns >= before_ns) {
       continue;
     }
     if (order.backward_steps++ == 0) {
-      order.first_backward_row = sample.row;
-      order.first_backward_ns = sample.t_ns;
-      order.row_before = before.row;
-      order.before_ns = before.t_ns;
+      order.first_backward_row = rows[i].row;
+      order.first_backward_ns = t_ns;
+      order.row_before = rows[i - 1].row;
+      order.before_ns = before_ns;
     }
     std::int64_t back_ns = 0;
-    if (__builtin_sub_overflow(before.t_ns, sample.t_ns, &back_ns)) {
+    if (__builtin_sub_overflow(before_ns, t_ns, &back_ns)) {
       back_ns = std::numeric_limits<std::int64_t>::max();
     }
     order.longest_backward_ns = std::max(order.longest_backward_ns, back_ns);
   }
+  std::vector<std::size_t> by_time;
   if (order.backward_steps > 0) {
     if (policy == UnorderedPolicy::error) {
-      throw Error(ErrorKind::input, place_of(log, order.first_backward_row), unordered_problem(order),
-                  "sort the log, or use `order` sort");
+      throw Error(ErrorKind::input, fmt::format("{}:{}", log.source, order.first_backward_row),
+                  unordered_problem(order), "sort the log, or use `order` sort");
     }
-    std::stable_sort(log.samples.begin(), log.samples.end(),
-                     [](const GazeSample& a, const GazeSample& b) { return a.t_ns < b.t_ns; });
+    by_time.resize(rows.size());
+    std::iota(by_time.begin(), by_time.end(), std::size_t{0});
+    std::stable_sort(by_time.begin(), by_time.end(),
+                     [&](std::size_t a, std::size_t b) { return rows.t_ns(a) < rows.t_ns(b); });
     log.warnings.push_back(fmt::format("{}: sorted by time; {} {} backwards", log.source, order.backward_steps,
                                        order.backward_steps == 1 ? "step went" : "steps went"));
   }
+  return by_time;
 }
 
-void drop_duplicates(GazeLog& log, UnorderedPolicy policy) {
-  GazeOrder& order = log.order;
-  std::vector<GazeSample>& samples = log.samples;
-  std::size_t kept = 0;
-  std::size_t group = 0;  // index of the first kept row of the current time
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (kept > 0 && samples[kept - 1].t_ns != samples[i].t_ns) {
-      group = kept;
-    }
-    std::size_t twin = group;
-    while (twin < kept && samples[twin].eye != samples[i].eye) {
-      ++twin;
-    }
-    if (twin < kept) {
-      if (order.duplicates++ == 0) {
-        order.first_duplicate_row = samples[i].row;
-        order.first_duplicate_ns = samples[i].t_ns;
-        order.row_repeated = samples[twin].row;
-      }
-      order.identical_duplicates += is_same_position(samples[twin], samples[i]) ? 1 : 0;
-      samples[twin] = samples[i];
-      continue;
-    }
-    if (kept != i) {
-      samples[kept] = samples[i];
-    }
-    ++kept;
+void refuse_duplicates(UnorderedPolicy policy, GazeLog& log) {
+  const GazeOrder& order = log.order;
+  if (order.duplicates == 0) {
+    return;
   }
-  const std::size_t rows = samples.size();
-  samples.resize(kept);
-  if (order.duplicates > 0) {
-    if (policy == UnorderedPolicy::error) {
-      throw Error(ErrorKind::input, place_of(log, order.first_duplicate_row), duplicate_problem(order),
-                  loses_much(order) ? fmt::format("dropping repeats would keep only {} of {} rows: export again with "
-                                                  "stamps that differ, or look at it with 'gazetrace gaze inspect'",
-                                                  kept, rows)
-                                    : fmt::format("remove one of them, or use `order` sort, which keeps the last "
-                                                  "of equal stamps, {} of {} rows",
-                                                  kept, rows));
-    }
-    log.warnings.push_back(fmt::format("{}: {} {} dropped: the last row of equal times is kept", log.source,
-                                       order.duplicates, order.duplicates == 1 ? "duplicate was" : "duplicates were"));
+  if (policy == UnorderedPolicy::error) {
+    const std::size_t kept = order.rows - order.duplicates;
+    throw Error(ErrorKind::input, fmt::format("{}:{}", log.source, order.first_duplicate_row), duplicate_problem(order),
+                loses_much(order) ? fmt::format("dropping repeats would keep only {} of {} rows: export again with "
+                                                "stamps that differ, or look at it with 'gazetrace gaze inspect'",
+                                                kept, order.rows)
+                                  : fmt::format("remove one of them, or use `order` sort, which keeps the last "
+                                                "of equal stamps, {} of {} rows",
+                                                kept, order.rows));
   }
+  log.warnings.push_back(fmt::format("{}: {} {} dropped: the last row of equal times is kept", log.source,
+                                     order.duplicates, order.duplicates == 1 ? "duplicate was" : "duplicates were"));
 }
 
 namespace {
@@ -264,7 +234,9 @@ void divide_at_restarts(RawGaze& raw, const Stamps& stamps) {
 }  // namespace
 
 std::string words_of_restart(const RawGaze& raw) {
-  return raw.clock_restarts_row == 0 ? "" : fmt::format("the clock starts again in line {}: ", raw.clock_restarts_row);
+  return raw.clock_restarts_row == 0
+             ? ""
+             : fmt::format("the clock starts again in line {}, or was set back: ", raw.clock_restarts_row);
 }
 
 void mend_stamps(RawGaze& raw, UnorderedPolicy policy) {

@@ -3,6 +3,8 @@
 // at each time.
 #pragma once
 
+#include <vector>
+
 #include "gazetrace/gaze_raw.hpp"
 
 namespace gazetrace {
@@ -16,11 +18,11 @@ std::string words_of_restart(const RawGaze& raw);
 // Whether keeping one of equal stamps would lose more than a few per cent of the rows.
 bool loses_much(const GazeOrder& order);
 
-// Sorts the samples by time where that is the policy; otherwise throws Error(input) naming the first row that is out of
-// order. `log.order` receives the counts of what was found.
-void order_samples(GazeLog& log, UnorderedPolicy policy);
-// Under the same policy, keeps the last row of each eye among rows of the same time.
-void drop_duplicates(GazeLog& log, UnorderedPolicy policy);
+// The indices of the rows in the order of time; empty where they stand in it. `log.order` receives the counts of what
+// was found. Unless they are to be sorted, throws Error(input) naming the first row that is out of order.
+std::vector<std::size_t> rows_by_time(const RawRows& rows, UnorderedPolicy policy, GazeLog& log);
+// Under the same policy, warns of the rows that were dropped because `log.order` counted them as duplicates, or throws.
+void refuse_duplicates(UnorderedPolicy policy, GazeLog& log);
 // What is wrong with the first row that is out of order, or that repeats a time, in words for messages.
 std::string unordered_problem(const GazeOrder& order);
 std::string duplicate_problem(const GazeOrder& order);

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""No guess reaches a picture: real recordings are written as tables of one's own under each unit, origin and axes, once
-without a word about them and once with a false statement. Without a word a table must be refused or read right; a false
-statement must be refused or named, or stands among those that no data tell apart (docs/gaze.md). Ends with 1 otherwise.
+"""No guess reaches a picture: real recordings are written as tables of one's own under each unit, origin, axes and
+validity, once without a word about them and once with a false statement. Without a word a table must be refused or read
+right; a false statement must be refused or named, or stands among those that no data tell apart (docs/gaze.md). Ends with 1
+otherwise. Prints the suspicions about the recordings as they are, too: those that are wrong are false alarms.
 
   tests/benchmarks/gaze_readings.py build/dev/bin/gazetrace ../shared/gaze-samples
 """
 
 import csv
+import json
 import subprocess
 import sys
 import tempfile
@@ -32,7 +34,7 @@ PLACES = {
     "rad": (lambda u, v: ((u - .5) * .785, (.5 - v) * .436), ["--unit", "rad"]),
 }
 AXES = {"gl": lambda x, y, z: (x, y, z), "unity": lambda x, y, z: (x, y, -z), "sranipal": lambda x, y, z: (-x, y, -z),
-        "cv": lambda x, y, z: (x, -y, -z)}
+        "cv": lambda x, y, z: (x, -y, -z), "unreal": lambda x, y, z: (-z, x, y)}
 SCREEN = ["--screen-px", f"{WIDTH},{HEIGHT}", "--screen-cm", "51,29", "--screen-distance-cm", "60"]
 # Pairs of a truth and a statement that no data tell apart: mirrored pictures, origins under which gaze stays on the display,
 # and scales near each other.
@@ -42,6 +44,14 @@ ALIKE = [SMALL, {"px", "px from the bottom left"}, {"px from the bottom left", "
 # Of these, saccades are too few or too coarsely sampled to be measured, and nothing tells how large the movements were.
 UNMEASURED = {"eyelink-asc/mono500.asc", "tobii-studio-tsv/data.tsv", "smi-iview-txt/recording1_Samples.txt",
               "bids/derived-tx300/sub-01_task-view_recording-eye1_physio.tsv.gz"}
+
+
+# The recordings as they are, with what they do not state.
+AS_THEY_ARE = {**{name: [] for name in SCREENS + HEADS}, "eyelink-asc/bino1000.asc": [], "pupil-core/gaze_positions.csv": [],
+               "pupil-core/gaze_positions_with_monocular.csv": [], "pupil-invisible-cloud/gaze.csv": [],
+               "pupil-invisible-cloud/trampoline_02_gaze.csv": [], "pupil-neon-native/gaze ps1.raw": [],
+               "tobii-glasses2/livedata.json.gz": [], "tobii-glasses3/gazedata.gz": [],
+               "gazebase-vr/gazebase_vr_example.csv": [], "plain-csv/gaze-toy-example.csv": ["--screen-px", "1280,1024"]}
 
 
 def are_alike(name, true, said):
@@ -106,11 +116,33 @@ class Readings:
                     self.judge(name, true, said, ["--axes", said], are_alike(name, true, said))
 
 
+    def validities(self):
+        """A twentieth of the rows lost, at (0, 0), with 1 or 0 for those that are good."""
+        for name in SCREENS:
+            rows = [(int(r["t[ns]"]), float(r["u[1]"]) * WIDTH, float(r["v[1]"]) * HEIGHT) for r in self.truth(name)]
+            for true in ("1", "0"):
+                self.table("t[ns],x[px],y[px],valid", [(t, 0, 0, 1 - int(true)) if i % 40 < 2 else (t, x, y, int(true)) for i, (t, x, y) in enumerate(rows)])
+                self.judge(name, true, "1" if true == "1" else "", [], False)
+                for said in ("1", "0"):
+                    self.judge(name, true, said, ["--valid-values", said], False)
+
+    def suspicions(self):
+        """What the doctor says of the recordings as they are, each with its suspicions and faults."""
+        for name, options in AS_THEY_ARE.items():
+            report = json.loads(self.run("gaze", "inspect", self.samples / name, *options, "--json").stdout)
+            yield name, [f["what"] for f in report["findings"] if f["kind"] != "note"]
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         readings = Readings(Path(sys.argv[1]).resolve(), Path(sys.argv[2]), Path(folder))
         readings.screens()
         readings.heads()
+        readings.validities()
+        suspicions = list(readings.suspicions())
+    for name, found in suspicions:
+        print(f"{name}: {'; '.join(found) or 'nothing'}")
+    print(f"{sum(bool(found) for _, found in suspicions)} of {len(suspicions)} recordings as they are have suspicions")
     print(f"{sum(readings.counts.values())} readings: " + ", ".join(f"{n} {what}" for what, n in sorted(readings.counts.items())))
     for line in readings.silent:
         print("wrong in silence: " + line)

@@ -7,10 +7,8 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
-#include <map>
 
 #include "gaze/inspect/inspect.hpp"
-#include "gaze/inspect/recurring_place.hpp"
 #include "gazelog/recordings.hpp"
 #include "gazelog/row_samples.hpp"
 #include "gazelog/stamps.hpp"
@@ -51,9 +49,6 @@ class Doctor {
     time_unit();
     bursts();
     const bool unit_is_wrong = doubts_of_reading();
-    if (!has_finding({"validity"})) {
-      zeros();
-    }
     recurring_place();
     mark_in_one_axis();
     if (!examine_axes(log_, unit_is_wrong, report_)) {
@@ -115,7 +110,8 @@ class Doctor {
     for (const RawFault& fault : whole_->raw.faults) {
       add(FindingKind::fault, fault.code, fault.found, "the rows themselves", fault.setting);
     }
-    if (!whole_->is_sorted_by_option) {
+    // Of stamps that have a fault of their own, the order says nothing new.
+    if (!whole_->is_sorted_by_option && !has_finding({"pairs", "counter-overflow", "rounded-stamps"})) {
       faults_of_order();
     }
   }
@@ -265,33 +261,6 @@ class Doctor {
                    : Vec2d{};
   }
 
-  void zeros() {
-    if (whole_ == nullptr || whole_->conventions.form != PlaceForm::position || whole_->conventions.zero_is_missing) {
-      return;
-    }
-    const RawRows& rows = whole_->raw.rows;
-    std::size_t zeros = 0;  // counted from the corner of the display
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const Vec2d corner = corner_of(whole_->raw, whole_->conventions, i);
-      const Vec3d at = rows.at(i);
-      zeros += at.x == corner.x && at.y == corner.y && is_usable(rows[i].validity) ? 1 : 0;
-    }
-    if (zeros < 3 || zeros * 2000 < log_.order.rows) {
-      return;
-    }
-    // In degrees, straight ahead is a place like any other: zeros are missing values only where gaze comes and goes by
-    // jumps.
-    if (log_.conventions.origin.value == PositionOrigin::center && zeros * 200 < log_.order.rows) {
-      return;
-    }
-    add(FindingKind::suspicion, "zero-missing",
-        fmt::format("{} of {} rows are exactly at (0, 0) and count as good: missing values written as zeros", zeros,
-                    log_.order.rows),
-        "statistics: noise never gives exact zeros in both axes that often" +
-            read_otherwise([](Conventions& c) { c.zero_is_missing = true; }),
-        "`missing-value` 0");
-  }
-
   void recurring_place() {
     const auto place = whole_ == nullptr ? std::nullopt : find_recurring_place(whole_->raw, whole_->conventions);
     if (!place) {
@@ -319,45 +288,19 @@ class Doctor {
         option_takes_it ? fmt::format("`missing-value` {}", mark) : "");
   }
 
-  // Trackers that lose one axis alone write their mark, a whole negative number, into that one.
   void mark_in_one_axis() {
-    if (whole_ == nullptr || whole_->conventions.form != PlaceForm::position || whole_->conventions.missing_value ||
-        log_.conventions.origin.value == PositionOrigin::center) {
+    if (whole_ == nullptr || log_.conventions.origin.value == PositionOrigin::center ||
+        has_finding({"missing-value"})) {
       return;
     }
-    std::map<double, std::size_t> counts;
-    const RawRows& rows = whole_->raw.rows;
-    const std::size_t stride = rows.size() / kMostLookedAt + 1;
-    for (std::size_t i = 0; i < rows.size(); i += stride) {
-      const RawSample row = rows[i];
-      for (const double value : {row.at.x, row.at.y}) {
-        if (is_usable(row.validity) && value < 0 && value == std::floor(value) && !is_missing_marker(value)) {
-          ++counts[value];
-        }
-      }
+    if (const auto mark = find_mark_in_one_axis(whole_->raw, whole_->conventions)) {
+      add(FindingKind::suspicion, "missing-value",
+          fmt::format("{} coordinates are exactly {} and count as good: a mark of missing values, in one axis alone",
+                      mark->rows, mark->raw.x),
+          "statistics: a whole number beside the display that comes again and again" +
+              read_otherwise([&](Conventions& c) { c.missing_value = mark->raw.x; }),
+          fmt::format("`missing-value` {}", mark->raw.x));
     }
-    const auto most = std::max_element(counts.begin(), counts.end(),
-                                       [](const auto& a, const auto& b) { return a.second < b.second; });
-    constexpr std::size_t kLeast = 3;
-    if (most == counts.end() || most->second < kLeast || most->second * 200 * stride < rows.size()) {
-      return;
-    }
-    // Gaze beside the display comes to many places there, and none stands out.
-    std::size_t all = 0;
-    for (const auto& [value, count] : counts) {
-      all += count;
-    }
-    const bool is_known = std::any_of(report_.findings.begin(), report_.findings.end(),
-                                      [](const GazeFinding& finding) { return finding.code == "missing-value"; });
-    if (most->second * 2 < all || is_known) {
-      return;
-    }
-    add(FindingKind::suspicion, "missing-value",
-        fmt::format("{} coordinates are exactly {} and count as good: a mark of missing values, in one axis alone",
-                    most->second * stride, most->first),
-        "statistics: a whole number beside the display that comes again and again" +
-            read_otherwise([&](Conventions& c) { c.missing_value = most->first; }),
-        fmt::format("`missing-value` {}", most->first));
   }
 
   // Positions that exceed the display's height but never its width suggest exchanged axes.
@@ -407,8 +350,13 @@ class Doctor {
           "the log holds one row: neither its rate nor a movement of the eye can be told from it",
           "the file; was it cut off?");
     }
-    lost_ends();
-    if (loss.usable == 0) {
+    const bool is_reversed = has_finding({"validity"});  // then all that is said of losses follows from it
+    if (!is_reversed) {
+      lost_ends();
+    }
+    if (is_reversed) {
+      // said already
+    } else if (loss.usable == 0) {
       add(FindingKind::suspicion, "nothing-usable", "no sample is usable",
           "check which column says what is valid: `validity-column`, `valid-values`");
     } else if (share(loss.usable) < 0.5) {
@@ -427,7 +375,8 @@ class Doctor {
     const bool are_marks = std::any_of(report_.findings.begin(), report_.findings.end(), [](const GazeFinding& f) {
       return f.code == "zero-missing" || f.code == "missing-value";
     });
-    const bool tells = !are_marks && !log_.sample_age_unknown;  // marks stand still as well, and are reported already
+    // Marks stand still as well, and so do numbers of few digits; both are reported already.
+    const bool tells = !are_marks && !is_reversed && !has_finding({"coarse"}) && !log_.sample_age_unknown;
     if (tells && report_.frozen.samples * 20 > loss.usable && report_.frozen.runs > 0) {
       add(FindingKind::suspicion, "frozen",
           fmt::format("positions stand still bit by bit in {} runs, the longest of {:.0f} ms in line {}",
@@ -525,7 +474,7 @@ class Doctor {
     for (const GazeFinding& finding : report_.findings) {
       if (finding.kind == FindingKind::note) {
         const bool counts = finding.code == "off-screen" || finding.code == "lost" || finding.code == "rate" ||
-                            finding.code == "frozen";
+                            finding.code == "frozen" || finding.code == "scene-camera";
         notes += counts ? fmt::format("{}{}", notes.empty() ? "" : "; ", finding.what) : "";
         continue;
       }
@@ -550,10 +499,12 @@ class Doctor {
           "suspicious, and no option mends it for certain: read above what each suspicion is from, then export or copy "
           "the file again, or use the log knowing what is wrong";
     } else {
-      report_.verdict = fmt::format("{}{}", fmt::join(report_.settings, " "),
-                                    helpless > 0 ? " mends a part of it; no option mends the rest: export or copy the "
+      const bool are_several =
+          report_.settings.size() > 1 || report_.settings.front().find(" and ") != std::string::npos;
+      report_.verdict = fmt::format("{} mend{}{}", fmt::join(report_.settings, " "), are_several ? "" : "s",
+                                    helpless > 0 ? " a part of it; no option mends the rest: export or copy the "
                                                    "file again, or use the log knowing what is wrong"
-                                                 : " mends it");
+                                                 : " it");
     }
   }
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/enum_name.hpp"
-#include "gazelog/mending.hpp"
+#include "gazelog/log_file.hpp"
 #include "gazelog/recordings.hpp"
 #include "gazelog/timing.hpp"
 

@@ -2,11 +2,16 @@
 // The parts of an inspection; each file in this folder holds one or two of them.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "gazelog/screen_angles.hpp"
 #include "gazetrace/gaze_inspect.hpp"
+#include "gazetrace/gaze_log.hpp"
+#include "gazetrace/gaze_raw.hpp"
 
 namespace gazetrace {
 
@@ -46,5 +51,23 @@ bool examine_axes(const GazeLog& log, bool unit_is_wrong, GazeInspection& inspec
 // its file, or null.
 void find_what_is_wrong(const GazeLog& log, const GazeUnderInspection* whole, const GazeInspectOptions& options,
                         GazeInspection& inspection);
+
+// A place that gaze leaves and returns to by jumps alone, over and over, which no eye does.
+struct RecurringPlace {
+  Vec3d raw;             // in the file's unit; z only of vectors
+  std::size_t rows = 0;  // the rows at this place that count as good
+};
+
+// The place with the most rows. Beside the display a few rows are enough; elsewhere it takes a hundredth of the rows.
+std::optional<RecurringPlace> find_recurring_place(const RawGaze& raw, const Conventions& conventions);
+// Trackers that lose one axis alone write their mark, a whole negative number, into that one: it, and in how many rows.
+std::optional<RecurringPlace> find_mark_in_one_axis(const RawGaze& raw, const Conventions& conventions);
+
+inline constexpr std::array kReportedValidities{GazeValidity::ok,         GazeValidity::low_confidence,
+                                                GazeValidity::blink,      GazeValidity::lost,
+                                                GazeValidity::off_screen, GazeValidity::interpolated};
+inline constexpr std::array kReportedEvents{GazeEventType::fixation, GazeEventType::saccade, GazeEventType::blink,
+                                            GazeEventType::message,  GazeEventType::segment, GazeEventType::trial,
+                                            GazeEventType::aoi};
 
 }  // namespace gazetrace

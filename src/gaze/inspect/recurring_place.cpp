@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gaze/inspect/recurring_place.hpp"
+#include "gaze/inspect/inspect.hpp"
 
 #include <algorithm>
 #include <array>
@@ -225,6 +225,34 @@ std::optional<RecurringPlace> find_recurring_place(const RawGaze& raw, const Con
   const bool is_plain =
       mark && ((mark->raw.x == mark->raw.y && mark->raw.y == mark->raw.z) || (mark->raw.x == 0 && mark->raw.y == 0));
   return mark && (!has_three || is_plain) ? mark : std::nullopt;
+}
+
+std::optional<RecurringPlace> find_mark_in_one_axis(const RawGaze& raw, const Conventions& conventions) {
+  if (conventions.form != PlaceForm::position || conventions.missing_value) {
+    return std::nullopt;
+  }
+  constexpr std::size_t kMostLookedAt = 200'000;
+  constexpr std::size_t kOneRowIn = 200;
+  std::map<double, std::size_t> counts;
+  std::size_t all = 0;
+  const std::size_t stride = raw.rows.size() / kMostLookedAt + 1;
+  for (std::size_t i = 0; i < raw.rows.size(); i += stride) {
+    const RawSample row = raw.rows[i];
+    for (const double value : {row.at.x, row.at.y}) {
+      if (is_usable(row.validity) && value < 0 && value == std::floor(value) && !is_missing_marker(value)) {
+        ++counts[value];
+        ++all;
+      }
+    }
+  }
+  const auto most =
+      std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  // Gaze beside the display comes to many places there, and none stands out.
+  if (most == counts.end() || most->second < kFewestRows || most->second * kOneRowIn * stride < raw.rows.size() ||
+      most->second * 2 < all) {
+    return std::nullopt;
+  }
+  return RecurringPlace{{most->first, most->first, 0}, most->second * stride};
 }
 
 }  // namespace gazetrace

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "gaze/inspect/inspect.hpp"
-#include "gaze/inspect/report_order.hpp"
 #include "gazelog/recordings.hpp"
 
 namespace gazetrace {

@@ -7,7 +7,6 @@
 #include <iterator>
 
 #include "gaze/inspect/inspect.hpp"
-#include "gaze/inspect/report_order.hpp"
 #include "gazelog/recordings.hpp"
 
 namespace gazetrace {
@@ -132,13 +131,15 @@ void write_quality(const GazeInspection& r, Text& text) {
             loses ? ", the longest " + duration_text(loss.longest_ns) : "",
             loss.leading_ns > 0 ? ", " + duration_text(loss.leading_ns) + " at the beginning" : "",
             loss.trailing_ns > 0 ? ", " + duration_text(loss.trailing_ns) + " at the end" : "");
-  text.line("frozen",
-            "the position stands still for 100 ms or more {} times{}; {:.2f} % of the samples repeat the one before",
-            r.frozen.runs,
-            r.frozen.runs > 0 ? fmt::format(", at most for {} from line {} on", duration_text(r.frozen.longest_ns),
-                                            r.frozen.longest_row)
-                              : "",
-            100 * r.frozen.repeated_share);
+  text.line(
+      "frozen",
+      "stretches of 100 ms or more in which the position stands still: {}{}; {:.2f} % of the samples repeat the one "
+      "before",
+      r.frozen.runs,
+      r.frozen.runs > 0
+          ? fmt::format(", at most for {} from line {} on", duration_text(r.frozen.longest_ns), r.frozen.longest_row)
+          : "",
+      100 * r.frozen.repeated_share);
   if (loss.usable > 0) {
     const bool screen = r.kind != GazeKind::direction;
     text.line("range", "{} {:.4f} to {:.4f}, {} {:.4f} to {:.4f}", screen ? "u" : "x", r.range_x[0], r.range_x[1],

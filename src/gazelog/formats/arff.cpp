@@ -85,7 +85,6 @@ RawGaze read_gaze_arff(const GazeFile& file, const GazeReadOptions& options) {
   };
   RawGaze raw;
   raw.source = file.path;
-  raw.format = "arff";
   const std::size_t time = named(options.columns.time, "time");
   const std::size_t x = named(options.columns.x, "x");
   const std::size_t y = named(options.columns.y, "y");

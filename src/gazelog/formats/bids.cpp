@@ -10,7 +10,6 @@
 
 #include "core/text.hpp"
 #include "gazelog/bids_recording.hpp"
-#include "gazelog/bids_screen.hpp"
 #include "gazelog/bids_sidecars.hpp"
 #include "gazelog/read_support.hpp"
 #include "gazelog/units.hpp"
@@ -151,7 +150,6 @@ RawGaze read_gaze_bids(const GazeFile& file, const GazeReadOptions& options) {
   const Sidecars sidecars(name, name.suffix, options.allow_outside);
   RawGaze raw;
   raw.source = file.path;
-  raw.format = "bids";
   raw.nominal_rate_hz = sidecars.number("SamplingFrequency").value_or(0);
   raw.clock = sidecars.text("timestamp.Origin");
   read_own_keys(sidecars, raw);

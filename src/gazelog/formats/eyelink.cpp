@@ -74,7 +74,6 @@ class AscReader {
  public:
   AscReader(const GazeFile& file, const GazeReadOptions& options) : file_(file), options_(options) {
     raw_.source = file.path;
-    raw_.format = "eyelink-asc";
     raw_.clock = "tracker, from its start";
     exponent_ = declare_time(raw_, options, "first of a sample", 6, Evidence::format, file.path).exponent;
   }

@@ -32,7 +32,6 @@ class GazeParserReader {
  public:
   GazeParserReader(const GazeFile& file, const GazeReadOptions& options) : file_(file) {
     raw_.source = file.path;
-    raw_.format = "gazeparser";
     scale_ = declare_time(raw_, options, "T", 6, Evidence::format, file.path);
   }
 

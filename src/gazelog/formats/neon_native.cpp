@@ -77,7 +77,6 @@ RawGaze read_gaze_neon_native(const GazeFile& file, const GazeReadOptions& optio
                          : "map gaze onto a surface in Pupil Cloud, or put its scene_camera.json beside it and "
                            "take directions from the head with `frame` head";
   raw.source = file.path;
-  raw.format = "neon-native";
   raw.clock = "UTC, from 1970";
   raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
   raw.declared.time_column = {"gaze " + part + ".time", Evidence::format, {}};

@@ -234,7 +234,6 @@ RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
   }
   RawGaze raw;
   raw.source = file.path;
-  raw.format = "openxr-pose";
   raw.kind = GazeKind::direction;
   const bool is_own_table = !c.gaze[0];  // a pose's unit and axes are OpenXR's, a direction's are anybody's
   raw.is_own_table = is_own_table;

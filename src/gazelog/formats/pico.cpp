@@ -12,15 +12,9 @@ GazeColumns preset() {
   GazeColumns c;
   c.time = "Timeline";
   c.time_unit = TimeUnit::s;
-  c.x = "Combine Eye Gaze Vector. x";
-  c.y = "Combine Eye Gaze Vector. y";
-  c.z = "Combine Eye Gaze Vector. z";
-  c.head_x = "Head Position. x";
-  c.head_y = "Head Position. y";
-  c.head_z = "Head Position. z";
-  c.head_rotation_x = "Head Rotation. x";
-  c.head_rotation_y = "Head Rotation. y";
-  c.head_rotation_z = "Head Rotation. z";
+  std::tie(c.x, c.y, c.z) = xyz("Combine Eye Gaze Vector. ");
+  std::tie(c.head_x, c.head_y, c.head_z) = xyz("Head Position. ");
+  std::tie(c.head_rotation_x, c.head_rotation_y, c.head_rotation_z) = xyz("Head Rotation. ");
   c.axes = GazeAxes::unity;
   c.head_axes = GazeAxes::unity;
   return c;
@@ -29,8 +23,7 @@ GazeColumns preset() {
 }  // namespace
 
 double sniff_gaze_pico(const GazeFile& file) {
-  const std::string_view line = head_of(file).substr(0, file.text.find('\n'));
-  const auto has = [&](std::string_view text) { return line.find(text) != std::string_view::npos; };
+  const WordsIn has{first_line_of(file)};
   return has("Combine Eye Gaze Vector") ? has("Head Rotation") && has("Timeline") ? 0.97 : 0.5 : 0.0;
 }
 

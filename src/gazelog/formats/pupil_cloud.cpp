@@ -71,9 +71,7 @@ void declare_angles(RawGaze& raw, const std::string& place) {
 }  // namespace
 
 double sniff_gaze_pupil_cloud(const GazeFile& file) {
-  const std::string_view head = head_of(file, 4096);
-  const std::string_view line = head.substr(0, head.find('\n'));
-  const auto has = [&](std::string_view text) { return line.find(text) != std::string_view::npos; };
+  const WordsIn has{first_line_of(file)};
   // A no-break space may stand before the unit.
   const bool places = has("gaze x") && has("[px]") && has("timestamp") && has("[ns]");
   // Places alone could be of any format.
@@ -87,7 +85,6 @@ RawGaze read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& optio
   RawGaze raw;
   raw.way_out = "map gaze onto a surface in Pupil Cloud, or take directions from the head with `frame` head";
   raw.source = file.path;
-  raw.format = "pupil-cloud";
   raw.clock = "UTC, from 1970";
   raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
   const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, 0, Evidence::header, place);

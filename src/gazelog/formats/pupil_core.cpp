@@ -91,9 +91,7 @@ bool eye_0_is_right(const GazeFile& file, const DelimitedTable& table, const Cor
 }  // namespace
 
 double sniff_gaze_pupil_core(const GazeFile& file) {
-  const std::string_view head = head_of(file, 4096);
-  const std::string_view line = head.substr(0, head.find('\n'));
-  const auto has = [&](std::string_view text) { return line.find(text) != std::string_view::npos; };
+  const WordsIn has{first_line_of(file)};
   return has("norm_pos_x") && has("confidence") && has("timestamp") && !has("x_norm") && !has("dispersion")
              ? has("base_data") ? 0.99 : 0.8
              : 0.0;
@@ -108,7 +106,6 @@ RawGaze read_gaze_pupil_core(const GazeFile& file, const GazeReadOptions& option
       "export gaze on a surface (gaze_positions_on_surface_....csv), or take directions from the head "
       "with `frame` head";
   raw.source = file.path;
-  raw.format = "pupil-core";
   raw.clock = "Pupil, arbitrary zero";
   raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
   const bool by_eye = c.normal[0] && c.normal[1];

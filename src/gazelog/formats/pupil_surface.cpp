@@ -23,9 +23,7 @@ bool is_cloud(const DelimitedTable& table) {
 }  // namespace
 
 double sniff_gaze_pupil_surface(const GazeFile& file) {
-  const std::string_view head = head_of(file, 4096);
-  const std::string_view line = head.substr(0, head.find('\n'));
-  const auto has = [&](std::string_view text) { return line.find(text) != std::string_view::npos; };
+  const WordsIn has{first_line_of(file)};
   const bool core = has("x_norm") && has("y_norm") && has("on_surf");
   return (core && has("gaze_timestamp")) || has("gaze position on surface x") ? 0.99 : core ? 0.7 : 0.0;
 }
@@ -46,7 +44,6 @@ RawGaze read_gaze_pupil_surface(const GazeFile& file, const GazeReadOptions& opt
   const auto fixation = table.find("fixation id");
   RawGaze raw;
   raw.source = file.path;
-  raw.format = "pupil-surface";
   raw.clock = cloud ? "UTC, from 1970" : "Pupil, arbitrary zero";
   const std::size_t time_at = time_column(table, options, *time, place);
   const TimeScale scale = declare_time(raw, options, table.headings[time_at].text, cloud ? 0 : 9,

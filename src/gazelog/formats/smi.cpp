@@ -176,7 +176,6 @@ RawGaze read_gaze_smi(const GazeFile& file, const GazeReadOptions& options) {
   const SmiColumns c = find_columns(table, options, place);
   RawGaze raw;
   raw.source = file.path;
-  raw.format = "smi";
   raw.clock = "tracker";
   raw.pupil_unit = pupil_unit(table, c.eyes);
   read_preamble_lines(table, raw);

@@ -114,7 +114,6 @@ RawGaze read_gaze_tobii_glasses2(const GazeFile& file, const GazeReadOptions& op
       "`frame` head takes the directions of the eyes from the head; or map gaze onto the display "
       "and export that";
   raw.source = file.path;
-  raw.format = "tobii-glasses-2";
   raw.clock = "device";
   raw.pupil_unit = "mm";
   raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;

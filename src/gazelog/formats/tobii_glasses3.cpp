@@ -58,7 +58,6 @@ RawGaze read_gaze_tobii_glasses3(const GazeFile& file, const GazeReadOptions& op
       "`frame` head takes the directions of the eyes from the head; or map gaze onto the display "
       "and export that";
   raw.source = file.path;
-  raw.format = "tobii-glasses-3";
   raw.clock = "recording, from its start";
   raw.pupil_unit = "mm";
   raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;

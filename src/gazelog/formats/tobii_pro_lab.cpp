@@ -44,7 +44,7 @@ OptionalColumn display_column(const DelimitedTable& table, std::string_view name
       continue;
     }
     const std::string unit = letters_and_digits(heading.unit);
-    if (unit == "dacspx" || (is_glasses && unit == "mcspx")) {
+    if (unit == "dacspx" || (is_glasses && (unit == "mcspx" || unit == "mcsnorm"))) {
       return i;
     }
     if (unit.empty() || unit == "px") {
@@ -157,9 +157,7 @@ std::optional<GazeEventType> movement_type(std::string_view text) {
 }  // namespace
 
 double sniff_gaze_tobii_pro_lab(const GazeFile& file) {
-  const std::string_view head = head_of(file);
-  const std::string_view line = head.substr(0, head.find('\n'));
-  const auto has = [&](std::string_view text) { return line.find(text) != std::string_view::npos; };
+  const WordsIn has{first_line_of(file)};
   if (!has("Recording timestamp") || !has("\t")) {
     return 0.0;
   }
@@ -172,7 +170,6 @@ RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
   const LabColumns c = find_columns(file, table, options, place);
   RawGaze raw;
   raw.source = file.path;
-  raw.format = "tobii-pro-lab";
   raw.clock = "recording, from its start";
   raw.pupil_unit = "mm";
   const bool has_directions = c.direction[0][0] && c.direction[0][1] && c.direction[0][2] && c.direction[1][0] &&
@@ -256,7 +253,11 @@ RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
     return raw;
   }
   const std::string columns = table.headings[*c.eyes.front().x].text + ", " + table.headings[*c.eyes.front().y].text;
-  declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::format, columns}, place);
+  const bool is_norm = letters_and_digits(table.headings[*c.eyes.front().x].unit) == "mcsnorm";
+  declare_places(raw,
+                 {is_norm && c.is_glasses ? PositionUnit::fraction : PositionUnit::px, PositionOrigin::top_left,
+                  Evidence::format, columns},
+                 place);
   return raw;
 }
 

@@ -105,7 +105,6 @@ class StudioReader {
         recordings_(table_, options.columns.recording, {"ParticipantName", "RecordingName"}),
         rows_(file, table_, std::max(c_.needed, recordings_.needed_cells())) {
     raw_.source = file.path;
-    raw_.format = "tobii-studio";
     raw_.clock = "recording, from its start";
     raw_.pupil_unit = "mm";
     const std::string& time = table_.headings[c_.time].text;
@@ -280,9 +279,7 @@ class StudioReader {
 }  // namespace
 
 double sniff_gaze_tobii_studio(const GazeFile& file) {
-  const std::string_view head = head_of(file);
-  const std::string_view line = head.substr(0, head.find('\n'));
-  const auto has = [&](std::string_view text) { return line.find(text) != std::string_view::npos; };
+  const WordsIn has{first_line_of(file)};
   if (!has("RecordingTimestamp")) {
     return 0.0;
   }

@@ -13,24 +13,16 @@ GazeColumns preset() {
   c.time = "time(100ns)";
   for (auto* const eye : {&c.left, &c.right}) {
     const std::string side = eye == &c.left ? "L" : "R";
-    eye->x = "gaze_direct_" + side + ".x";
-    eye->y = "gaze_direct_" + side + ".y";
-    eye->z = "gaze_direct_" + side + ".z";
+    std::tie(eye->x, eye->y, eye->z) = xyz("gaze_direct_" + side + ".");
     eye->validity = "eye_valid_" + side;
     eye->openness = "openness_" + side;
     eye->pupil = "pupil_diameter_" + side;
-    eye->origin_x = "gaze_origin_" + side + ".x";
-    eye->origin_y = "gaze_origin_" + side + ".y";
-    eye->origin_z = "gaze_origin_" + side + ".z";
+    std::tie(eye->origin_x, eye->origin_y, eye->origin_z) = xyz("gaze_origin_" + side + ".");
   }
   c.valid_mask = 2;
   c.frame = "frame";
-  c.head_x = "helmet_pos_x";
-  c.head_y = "helmet_pos_y";
-  c.head_z = "helmet_pos_z";
-  c.head_rotation_x = "helmet_rot_x";
-  c.head_rotation_y = "helmet_rot_y";
-  c.head_rotation_z = "helmet_rot_z";
+  std::tie(c.head_x, c.head_y, c.head_z) = xyz("helmet_pos_");
+  std::tie(c.head_rotation_x, c.head_rotation_y, c.head_rotation_z) = xyz("helmet_rot_");
   c.axes = GazeAxes::sranipal;
   c.head_axes = GazeAxes::unity;
   return c;
@@ -39,8 +31,7 @@ GazeColumns preset() {
 }  // namespace
 
 double sniff_gaze_vive(const GazeFile& file) {
-  const std::string_view line = head_of(file).substr(0, file.text.find('\n'));
-  const auto has = [&](std::string_view text) { return line.find(text) != std::string_view::npos; };
+  const WordsIn has{first_line_of(file)};
   return has("gaze_direct_L.x") && has("eye_valid_L") ? has("helmet_rot_x") && has("time(100ns)") ? 0.97 : 0.5 : 0.0;
 }
 

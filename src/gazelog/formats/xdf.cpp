@@ -279,7 +279,6 @@ double sniff_gaze_xdf(const GazeFile& file) {
 RawGaze read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
   RawGaze raw;
   raw.source = file.path;
-  raw.format = "xdf";
   raw.clock = "LSL";
   const std::vector<XdfStream> streams = read_xdf(file.text, file.path, raw.damages, read_header);
   const std::vector<const XdfStream*> all = gaze_streams(streams, file.path);

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <random>
 
-#include "gazelog/decimal_comma.hpp"
+#include "gazelog/log_file.hpp"
 
 namespace gazetrace {
 namespace {

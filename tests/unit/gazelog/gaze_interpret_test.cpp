@@ -65,31 +65,6 @@ TEST_F(GazeInterpret, LoadingIsTheThreeStepsInTurn) {
   EXPECT_THAT(text, HasSubstr("'diameter'"));
 }
 
-// Every digit of a stamp is kept: 1700000000123456789 is no double.
-TEST_F(GazeInterpret, StampsUnderAnotherUnit) {
-  options_.columns.position_unit = PositionUnit::fraction;
-  const RawGaze raw = read_raw("time[ns],x,y\n-15,0.5,0.5\n-14,0.5,0.5\n1700000000123456789,0.5,0.5\n");
-  Conventions conventions = conclude_conventions(raw, options_);
-  const auto stamps = [&](int exponent) {
-    conventions.time_exponent.value = exponent;
-    std::vector<std::int64_t> all;
-    for (const GazeSample& sample : interpret(raw, conventions).samples) {
-      all.push_back(sample.t_ns);
-    }
-    return all;
-  };
-  EXPECT_THAT(stamps(0), ElementsAre(-15, -14, 1'700'000'000'123'456'789));
-  EXPECT_THROW(stamps(6), Error);  // they would reach over more than a hundred years
-  RawGaze in_tenths = raw;
-  in_tenths.declared.time_exponent.value = 1;
-  conventions = conclude_conventions(in_tenths, options_);
-  conventions.time_exponent.value = 0;
-  const GazeLog log = interpret(in_tenths, conventions);
-  EXPECT_EQ(log.samples[0].t_ns, -2);  // halves are rounded away from zero
-  EXPECT_EQ(log.samples[1].t_ns, -1);
-  EXPECT_EQ(log.samples[2].t_ns, 170'000'000'012'345'679);
-}
-
 TEST_F(GazeInterpret, AUnitThatIsLeftOpenIsRefused) {
   const RawGaze raw = read_raw("time[ms],x,y\n0,4,2\n16,9,5\n");
   try {
@@ -123,8 +98,6 @@ TEST_F(GazeInterpret, TheSameNumbersUnderOtherConventions) {
   EXPECT_EQ(interpret(raw, conventions).samples[0].v, 0.75);
   conventions.flip_x = true;
   EXPECT_EQ(interpret(raw, conventions).samples[0].u, 0.75);
-  conventions.time_exponent.value = 3;
-  EXPECT_EQ(interpret(raw, conventions).samples[3].t_ns, 50'000);
 }
 
 // Ten degrees are (0, sin 10, -cos 10): up in a table, whatever its columns count from, and down where the user says of

@@ -216,16 +216,139 @@ TEST_F(GazeJudge, ClocksThatStartAgainOverflowOrStandTwice) {
   EXPECT_EQ(read(pairs).samples[1].t_ns - read(pairs).samples[0].t_ns, 500'000);
 }
 
+// A direction 12 degrees to the right and 5 up, in the axes of Unreal: ahead, right, up.
+TEST_F(GazeJudge, DirectionsOfUnreal) {
+  const auto vector = [](const Vec2d& p, const char* pattern) {
+    const double right = (p.x - 0.5) * 0.6;
+    const double up = (0.5 - p.y) * 0.4;
+    return fmt::format(fmt::runtime(pattern), std::sqrt(1 - right * right - up * up), right, up);
+  };
+  const auto expect_ahead = [&](const GazeLog& log) {
+    EXPECT_NEAR(log.samples[10].direction.x, (place_at(10).x - 0.5) * 0.6, 1e-4);
+    EXPECT_NEAR(log.samples[10].direction.y, (0.5 - place_at(10).y) * 0.4, 1e-4);
+    EXPECT_LT(log.samples[10].direction.z, -0.8);
+  };
+  const std::string columns = table("time[s],gaze_dir_x,gaze_dir_y,gaze_dir_z",
+                                    [&](const Vec2d& p) { return vector(p, "{:.5f},{:.5f},{:.5f}"); });
+  const std::string cells =
+      table("time[s],gaze_dir", [&](const Vec2d& p) { return vector(p, "X={:.5f} Y={:.5f} Z={:.5f}"); });
+  expect_refused(columns, "`axes` unreal");
+  expect_refused(cells, "`axes` unreal");
+  options_.columns.axes = GazeAxes::unreal;
+  expect_ahead(read(columns));
+  expect_ahead(read(cells));
+}
+
+TEST_F(GazeJudge, ColumnsThatOnlyLookLikeGaze) {
+  const auto three = [](const Vec2d& p) { return fmt::format("{:.4f},{:.4f},{:.4f}", 30 * p.x, 20 * p.y, p.x * p.y); };
+  expect_refused(table("time[s],yaw,pitch,roll", three), "an eye does not roll");
+  expect_refused(table("time[s],pos_x,pos_y,pos_z", three), "a place in space or a direction");
+  expect_refused(table("time[s],target_x,target_y,mouse_x", three), "`x-column` and `y-column`");
+}
+
+TEST_F(GazeJudge, WordsBesideTheGazeSayWhereItCountsFrom) {
+  const auto from_bottom = [](const Vec2d& p) {
+    return fmt::format("{:.1f},{:.1f},bottom_left", 1920 * p.x, 1080 * (1 - p.y));
+  };
+  expect_true(read(table("time[s],gaze_x_px,gaze_y_px,coordinate_system", from_bottom)));
+}
+
+// Project Aria's frame has +x to the left, each eye its own yaw, and one pitch.
+TEST_F(GazeJudge, RadiansInAFrameOfTheHead) {
+  const GazeLog log = read(table("t[s],left_yaw_rads_cpf,right_yaw_rads_cpf,pitch_rads_cpf", [](const Vec2d&) {
+    return fmt::format("{:.6f},{:.6f},{:.6f}", -10 * kRadPerDeg, -12 * kRadPerDeg, 4 * kRadPerDeg);
+  }));
+  EXPECT_EQ(log.kind, GazeKind::direction);
+  ASSERT_EQ(log.eyes.size(), log.samples.size());
+  const Vec3d left = log.eyes[5].left.at;
+  EXPECT_NEAR(std::atan2(left.x, -left.z) * kDegPerRad, 10, 1e-3);
+  const Vec3d right = log.eyes[5].right.at;
+  EXPECT_NEAR(std::atan2(right.x, -right.z) * kDegPerRad, 12, 1e-3);
+  EXPECT_GT(right.y, 0);
+}
+
+// Directions beside the head's rotation stand in the world where they are at rest in it while the head turns.
+TEST_F(GazeJudge, DirectionsInTheWorldOfTheHead) {
+  std::string text =
+      "time[s],gazeDirection_x,gazeDirection_y,gazeDirection_z,headRotation_x,headRotation_y,"
+      "headRotation_z,headRotation_w\n";
+  const double at = 80 * kRadPerDeg;  // to the right, in Unity's axes
+  for (int i = 0; i < 400; ++i) {
+    const double half = 0.5 * (at + 0.3 * std::sin(0.05 * i));
+    text += fmt::format("{:.4f},{:.5f},0,{:.5f},0,{:.5f},0,{:.5f}\n", i / 60.0, std::sin(at), std::cos(at),
+                        std::sin(half), std::cos(half));
+  }
+  expect_refused(text, "`axes` unity, sranipal or cv");
+  options_.columns.axes = GazeAxes::unity;
+  const GazeLog log = read(text);
+  const Vec3d& d = log.samples[31].direction;  // the head has turned by 0.3 sin(1.55) beyond it
+  EXPECT_NEAR(std::atan2(d.x, -d.z), -0.3 * std::sin(0.05 * 31), 1e-3);
+}
+
+TEST_F(GazeJudge, StampsThatWereRoundedOrSetBack) {
+  const auto rows = [](const std::function<std::string(int)>& time) {
+    std::string text = "t[ms],u,v\n";
+    for (int i = 0; i < 400; ++i) {
+      text += fmt::format("{},{:.5f},{:.5f}\n", time(i), place_at(i).x, place_at(i).y);
+    }
+    return text;
+  };
+  const std::string rounded = rows([](int i) { return fmt::format("{:.5E}", 1'701'123'456'789.0 + 8 * i); });
+  EXPECT_THAT([&] { read(rounded); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("as a spreadsheet shows"), Not(HasSubstr("`order`")))));
+  const std::string back = rows([](int i) { return std::to_string(10'000 + 8 * i - (i < 200 ? 0 : 240)); });
+  EXPECT_THAT([&] { read(back); }, ThrowsMessage<Error>(AllOf(HasSubstr("or was set back"), HasSubstr("in line 202"),
+                                                              Not(HasSubstr("sort")))));
+  // A row that was written too late is out of order, and its clock is good.
+  const std::string late = rows([](int i) {
+    return std::to_string(8 * (i == 100 ? 103 : i > 100 && i < 104 ? i - 1 : i));
+  });
+  expect_refused(late, "`order` sort");
+}
+
+TEST_F(GazeJudge, ZerosForMissingPlaces) {
+  std::string text = "t[ms],x[px],y[px]\n";
+  for (int i = 0; i < 200; ++i) {
+    const Vec2d p = i % 20 < 2 ? Vec2d{} : place_at(i);
+    text += fmt::format("{},{:.1f},{:.1f}\n", 8 * i, 1920 * p.x, 1080 * p.y);
+  }
+  expect_refused(text, "`missing-value` 0");
+  options_.missing_value = 0;
+  EXPECT_EQ(read(text).samples[20].validity, GazeValidity::lost);
+}
+
+TEST_F(GazeJudge, BlocksOfOneEyeAndThenTheOther) {
+  const auto block = [](int begin, const char* eye, const char* end) {
+    std::string text =
+        fmt::format("START\t{0} \t{1}\tSAMPLES\tEVENTS\nSAMPLES\tGAZE\t{1}\tRATE\t250.00\tTRACKING\tCR\n", begin, eye);
+    for (int i = 0; i < 50; ++i) {
+      text += fmt::format("{}\t480.0\t540.0\t800.0\t...\n", begin + 4 * i);
+    }
+    return text + fmt::format(fmt::runtime(end), begin + 200);
+  };
+  options_ = {};
+  const std::string head = "** CONVERTED FROM a.edf\n** EYELINK II\nMSG\t1 GAZE_COORDS 0 0 1919 1079\n";
+  const GazeLog log = load_gaze_log(
+      files_.write("turns.asc", head + block(1000, "LEFT", "") + block(5000, "RIGHT", "END\t{} \tSAMPLES\n")),
+      options_);
+  ASSERT_EQ(log.samples.size(), 100U);
+  EXPECT_EQ(log.samples[99].u, 0.25);
+  EXPECT_THAT(log.warnings, ::testing::Contains(HasSubstr("the recorded eye changes")));
+  EXPECT_THAT(log.warnings, Not(::testing::Contains(HasSubstr("merged to their mean"))));
+}
+
 TEST_F(GazeJudge, RowsThatAreNoGaze) {
   std::string text = "t[ms],EventSource,u,v,heart\n";
   for (int i = 0; i < 100; ++i) {
     const Vec2d p = place_at(i);
     text += fmt::format("{},1,{:.4f},{:.4f},\n{},2,,,71\n", 8 * i, p.x, p.y, 8 * i + 3);
-    text += i == 50 ? "402,trial starts\n" : "";
+    text += i == 50 ? "402,trial starts\n" : i == 60 ? "MSG,482,trial ends\nt[ms],EventSource,u,v,heart\n" : "";
   }
   const GazeLog log = read(text);
   EXPECT_EQ(log.samples.size(), 100U);
-  ASSERT_EQ(log.events.size(), 1U);
+  ASSERT_EQ(log.events.size(), 2U);
+  EXPECT_EQ(log.events[1].text, "trial ends");
+  EXPECT_EQ(log.events[1].begin_ns, 482'000'000);
   EXPECT_EQ(log.events[0].text, "trial starts");
   EXPECT_EQ(log.events[0].begin_ns, 402'000'000);
 }
@@ -237,6 +360,11 @@ TEST_F(GazeJudge, FilesOfOtherKindsAreNamedWithTheWayOut) {
            {std::string("PK\x03\x04....", 8), "xlsx"},
            {"PAR1....", "Parquet"},
            {"MATLAB 5.0 MAT-file, Platform", "MATLAB"},
+           {std::string("\x80\x02]q\0X", 6), "pickle"},
+           {std::string("\x11\x22\0\0\x33\0\0\0 and more", 17), "is not a gaze log of a known format"},
+           {"trial,gaze_x,gaze_y\n1,\"[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13]\",\"[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, "
+            "11, 12, 13]\"\n",
+            "a row for each sample"},
            {"{\"time\": 1, \"x\": 2}\n{\"time\": 2, \"x\": 3}\n", "JSON"},
            {"# Title\n\nSome words, and more\nof them.\nAnd more,\nand more\n", "a text without rows of numbers"}}) {
     EXPECT_THAT([&] { load_gaze_log(files_.write("file.bin", content), {}); }, ThrowsMessage<Error>(HasSubstr(words)));

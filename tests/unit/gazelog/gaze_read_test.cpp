@@ -203,9 +203,8 @@ TEST_F(GazeRead, SuspiciousValuesAreNamed) {
   EXPECT_THAT([&] { read("t[s],x[px],y[px]\n0,-300,200\n1,200,-80\n2,10,20\n", options); },
               ThrowsMessage<Error>(AllOf(HasSubstr("67 % of them are negative"), HasSubstr("`origin` center"))));
   EXPECT_THAT(
-      warnings(read("t[s],x[px],y[px]\n0,0,0\n1,200,80\n2,10,20\n", options)),
-      ElementsAre("log.csv: 1 of 3 positions are exactly (0, 0): missing values written as zero? Name a validity "
-                  "column"));
+      [&] { read("t[s],x[px],y[px]\n0,0,0\n1,200,80\n2,0,0\n3,10,20\n4,0,0\n", options); },
+      ThrowsMessage<Error>(AllOf(HasSubstr("3 of 5 rows are exactly at (0, 0)"), HasSubstr("`missing-value` 0"))));
 }
 
 TEST_F(GazeRead, MissingValuesOfEveryManner) {
@@ -289,7 +288,7 @@ TEST_F(GazeRead, RepeatedHeadersAreSkipped) {
   const GazeLog log = read("t[s],u,v\n0,.1,.1\nt[s],u,v\n1,.2,.2\n");
   EXPECT_EQ(log.samples.size(), 2U);
   EXPECT_EQ(log.samples[1].row, 4);
-  EXPECT_THAT(warnings(log), ElementsAre("log.csv: the header is repeated 1 times; skipped"));
+  EXPECT_THAT(warnings(log), ElementsAre("log.csv: rows that repeat the header are skipped: 1"));
 }
 
 TEST_F(GazeRead, ColumnsByNameAndByNumber) {
