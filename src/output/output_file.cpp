@@ -38,14 +38,17 @@ std::set<std::string> identities_of(const std::vector<std::string>& inputs) {
     }
     const Place place = place_of(input);
     all.insert(place.identity);
-    if (place.exists || !has_frame_number(input)) {
+    if (place.exists) {
       continue;
     }
     try {
+      if (!has_frame_number(input)) {
+        continue;
+      }
       for (const std::int32_t frame : find_frames(input)) {
         all.insert(place_of(frame_file_name(input, frame)).identity);
       }
-    } catch (const Error&) {  // there are none: whoever reads them says so
+    } catch (const Error&) {  // no pattern, or no frames of it: whoever reads them says so
       continue;
     }
   }

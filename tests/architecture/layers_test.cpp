@@ -56,7 +56,7 @@ const std::set<std::pair<std::string, std::string>> sideways = {
 // The public headers of each module.
 const std::map<std::string, std::vector<std::string>> public_headers = {
     {"core", {"math", "image", "error", "version"}},
-    {"display", {"display"}},
+    {"display", {"display", "headsets"}},
     {"camera", {"camera", "motion"}},
     {"material", {"material"}},
     {"gazelog", {"gaze_conventions", "gaze_log", "gaze_raw", "gaze_raw_rows", "gaze_read", "gaze_write"}},

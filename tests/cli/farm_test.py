@@ -252,20 +252,19 @@ class Engines(FarmFiles):
     def test_a_chunk_is_tried_again_when_the_others_have_ended(self):
         self.write("slow.toml", FARM_TOML.replace("[4, 2, 1]", "[1024, 512, 256]"))
         (self.folder / "out").mkdir()
-        broken = self.folder / "out/f.0001.exr"
-        broken.mkdir()  # the first chunk fails, and the second one is held up
         first = subprocess.Popen([harness.PROGRAM, "farm", "slow.toml", "--chunks", "2", "--processes", "2", "--threads", "1",
                                   "--retries", "0"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
         self.addCleanup(first.kill)
         lock = self.folder / "out/.gazetrace.lock"
-        while not (lock.exists() and "--chunk 2/2" in lock.read_text()) and first.poll() is None:
+        while not (lock.exists() and all(f"--chunk {k}/2" in lock.read_text() for k in (1, 2))) and first.poll() is None:
             time.sleep(0.002)
-        held = renderers(self.folder, harness.PROGRAM)[2]
+        chunks = renderers(self.folder, harness.PROGRAM)
+        held = chunks[2]
         os.kill(held, signal.SIGSTOP)
+        os.kill(chunks[1], signal.SIGKILL)  # the first chunk fails, and the second one is held up
         self.addCleanup(lambda: os.path.exists(f"/proc/{held}") and os.kill(held, signal.SIGKILL))
         while self.states().get("1") != "failed" and first.poll() is None:
             time.sleep(0.02)
-        broken.rmdir()
         self.assertEqual(self.states()["2"], "running")
         # One farm at a time runs tasks here.
         for words in (["retry", "out"], ["slow.toml", "--chunks", "2"]):

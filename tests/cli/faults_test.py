@@ -19,6 +19,7 @@ import harness
 # Takes all frames, leaves half a film, says so and ends well, as ffmpeg 5.1 does on a full disk.
 CUTS_FILMS = """#!/bin/sh
 for out; do :; done
+[ "$out" = pipe:1 ] && exit 1  # it is asked which frames the film holds
 cat > /dev/null
 printf 'half a film' > "$out"
 echo 'av_interleaved_write_frame(): No space left on device' >&2
@@ -208,7 +209,7 @@ class Faults(harness.CliTest):
         self.write("g.csv", harness.moving_gaze())
         self.write("plan.toml", SWEEP.replace("1-2", "1-8").replace("spp = 4", "spp = 4096"))
         self.write("farm.toml", JOB + 'fps = 24\nframes = "1-60"\nspp = 4096\noutput = ["farm/f.####.exr"]\n')
-        for name, words in (("render", self.long_render()), ("sweep", ["sweep", "plan.toml", "-o", "out"]),
+        for name, words in (("render", [*self.long_render(), "--overwrite"]), ("sweep", ["sweep", "plan.toml", "-o", "out"]),
                             ("farm", ["farm", "farm.toml", "--chunks", "2"])):
             for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
                 with self.subTest(command=name, signal=number):
@@ -292,7 +293,7 @@ class FieldCases(harness.CliTest):
     def test_a_camera_is_not_replaced(self):
         told = self.told("save_camera.sh")
         self.assertEqual(self.code(told), 2, told)
-        self.assertTrue(told.rstrip().endswith("precious"), told)
+        self.assertRegex(told, r"(?m)^precious$")
 
     def test_two_spellings_are_one_file(self):
         told = self.told("two_spellings.sh")
@@ -311,8 +312,10 @@ class FieldCases(harness.CliTest):
         told = self.told("stopped_elsewhere.sh")
         if "unshare:" in told:
             self.skipTest("no other namespace can be made here")
-        self.assertEqual(self.code(told, "that the first replaced"), 0, told)
-        self.assertIn((self.code(told, "second"), self.code(told, "first")), ((3, 0), (0, 3)), told)
+        codes = self.code(told, "second"), self.code(told, "first")
+        if codes != (3, 0):  # else the second was refused, and made no pictures
+            self.assertEqual(codes, (0, 3), told)
+            self.assertEqual(self.code(told, "that the first replaced"), 0, told)
 
     @unittest.skipUnless(os.geteuid() == 0 and shutil.which("ffmpeg"), "needs root and ffmpeg")
     def test_a_film_on_a_full_disk(self):

@@ -51,11 +51,11 @@ def version_beside_jod(bench):
     """a score of FovVideoVDP is in JOD, version 1.2 of its parameters"""
     picture = bench.scene("compare/a8.png")
     result = bench.run_program("compare", picture, bench.scene("compare/b8.png"), "--metrics", "fovvideovdp", "--gaze-at", "0.5,0.5",
-                               "--screen-px", "64,48", "--screen-cm", "64,48", "--screen-distance-cm", "60", "--json", "out.json",
-                               "--csv", "out.csv")
+                               "--screen-px", "64,48", "--screen-cm", "64,48", "--screen-distance-cm", "60", "--json", "unit.json",
+                               "--csv", "unit.csv")
     if result.returncode:
         return False, bench.last_line(result)
-    unit = json.loads((bench.folder / "out.json").read_text())["sequence"][0]["scores"][0]["unit"]
-    lines = (bench.folder / "out.csv").read_text().splitlines()
+    unit = json.loads((bench.folder / "unit.json").read_text())["sequence"][0]["scores"][0]["unit"]
+    lines = (bench.folder / "unit.csv").read_text().splitlines()
     shown = [line for line in result.stdout.splitlines() if line.startswith("fovvideovdp [")]
     return (unit, lines[0].split(",")[-1], lines[1].split(",")[-1], shown != []) == ("JOD v1.2", "unit", "JOD v1.2", True), unit
