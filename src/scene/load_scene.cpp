@@ -72,7 +72,7 @@ void list_extensions(const GltfDocument& document, Scene& scene) {
 // their own mesh are coarse in the file.
 void warn_of_coarse_vertices(const Scene& scene, Warnings& warnings) {
   constexpr double kNoticeable_m = 1e-3;
-  constexpr double kNoticeableShare = 1e-4;  // of the size of the part
+  constexpr double kNoticeableShare = 1e-3;  // of the size of the part: a pixel, where it fills a thousand
   double coarsest_m = 0;
   std::string where;
   std::size_t parts = 0;
