@@ -77,15 +77,13 @@ TEST(MaterialExtensions, EveryOneOfTheListMayBeRequiredAndChangesNothingWhenEmpt
 
 // Numbers that JSON can hold and floats cannot.
 TEST(MaterialExtensions, HugeNumbersAreClampedWithAWarning) {
-  const auto check =
-      [](const std::string& name, const json& fields, const auto& value_of, float most) {
-        const Scene scene = load(with_extension(name, fields, {{"emissiveFactor", {1, 0, 0}}}));
-        EXPECT_EQ(value_of(scene.materials.at(0)), most) << name;
-        ASSERT_FALSE(scene.warnings.empty())
-            << name;  // a clamped strength is told as an emission that is not what was given, too
-        EXPECT_NE(scene.warnings[0].find("is outside its range and was clamped"), std::string::npos)
-            << scene.warnings[0];
-      };
+  const auto check = [](const std::string& name, const json& fields, const auto& value_of, float most) {
+    const Scene scene = load(with_extension(name, fields, {{"emissiveFactor", {1, 0, 0}}}));
+    EXPECT_EQ(value_of(scene.materials.at(0)), most) << name;
+    // A clamped strength is told as an emission that is not what was given, too.
+    ASSERT_FALSE(scene.warnings.empty()) << name;
+    EXPECT_NE(scene.warnings[0].find("is outside its range and was clamped"), std::string::npos) << scene.warnings[0];
+  };
   check(
       "KHR_materials_dispersion", {{"dispersion", 1e300}}, [](const Material& m) { return m.dispersion; }, 1000);
   check(
