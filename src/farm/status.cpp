@@ -128,6 +128,8 @@ TaskStatus observe_run(const FarmPlan& plan, const std::string& name, const std:
     task.state = state_in(record_path) == "interrupted" ? TaskState::interrupted
                  : locked                               ? TaskState::failed
                                                         : TaskState::unknown;
+  } else if (task.exit_code == 4) {  // before its first frame
+    task.state = TaskState::interrupted;
   }
   return task;
 }
