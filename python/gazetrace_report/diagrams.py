@@ -113,11 +113,10 @@ def _pareto(results, place, metric, with_pdf):
         _limits(axes.yaxis, _span([score for *_, score in points]))
         axes.set_xlabel("time of a frame [s]")
         axes.set_ylabel(f"{metric.words}, {metric.better}")
-        for reference in results.references(place):
-            floor = results.floor(reference, place[1], metric.name)
-            if floor is not None and axes.get_ylim()[0] < floor < axes.get_ylim()[1]:
-                axes.axhline(floor, color=drawing.INK, lw=0.8, ls=(0, (2, 4)))
-                axes.annotate("reference from itself", (1, floor), (0, 3), xycoords=("axes fraction", "data"), textcoords="offset points", ha="right", fontsize=7.5)
+        floors = [results.floor(reference, place[1], metric.name) for reference in results.references(place)]
+        floors = [floor for floor in floors if floor is not None and axes.get_ylim()[0] < floor < axes.get_ylim()[1]]
+        for floor in floors:
+            axes.axhline(floor, color=drawing.INK, lw=0.8, ls=(0, (2, 4)))
         for ids in fronts:
             front = sorted((time.mean, score.mean) for row, time, score in points if row.id in ids)
             if len(front) > 1:
@@ -132,6 +131,8 @@ def _pareto(results, place, metric, with_pdf):
             labels.keep_clear(time, score)
         for row, time, score in points:
             labels.put(time.mean, score.mean, row.short + ("" if score.resolved else ", unresolved"), ROLES[row.role].color, 8 if len(points) < 13 else 6.5)
+        for floor in floors:
+            labels.along(floor, "reference from itself")
         on_front = {name for ids in fronts for name in ids}
         numbers = [{"id": row.id, "role": row.role, "label": row.label, "time_s": time.mean, "time_s_low": time.low, "time_s_high": time.high, metric.name: score.mean,
                     "low": score.low, "high": score.high, "resolved": int(score.resolved), "front": int(row.id in on_front)} for row, time, score in points]

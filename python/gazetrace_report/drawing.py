@@ -104,16 +104,17 @@ class Labels:
         px, py = self.axes.transData.transform((x.mean, y.mean))
         self.taken += [(px - r, py - r, px + r, py + r), (low[0], py - 1, high[0], py + 1), (px - 1, low[1], px + 1, high[1])]
 
-    def put(self, x, y, words, color, size=8):
+    def put(self, x, y, words, color, size=8, radius=4):
         px, py = self.axes.transData.transform((x, y))
         probe = self.axes.text(0, 0, words, fontsize=size)
         extent = probe.get_window_extent(self.renderer)
         probe.remove()
         width, height, unit = extent.width * 1.08, extent.height, self.points  # browsers have wider letters
         best, least = None, None
+        beside = radius + 2
         for turn, rise in enumerate((0, 6, -6, 14, -14, 22, -22, 31, -31, 40, -40)):
             for right in (True, False):
-                left = px + 6 * unit if right else px - 6 * unit - width
+                left = px + beside * unit if right else px - beside * unit - width
                 bottom = py + rise * unit - height / 2
                 box = (left, bottom, left + width, bottom + height)
                 cost = 0.02 * turn * width * height + 4 * (width * height - _overlap(box, (self.box.x0, self.box.y0, self.box.x1, self.box.y1)))
@@ -122,10 +123,32 @@ class Labels:
                     best, least = (box, right, rise), cost
         box, right, rise = best
         self.taken.append(box)
-        offset = ((6 if right else -6), rise)
+        offset = (beside if right else -beside, rise)
         far = abs(rise) > 12
         self.axes.annotate(words, (x, y), offset, textcoords="offset points", fontsize=size, color=color, ha="left" if right else "right", va="center",
                            annotation_clip=False, arrowprops={"arrowstyle": "-", "color": color, "lw": 0.5, "shrinkA": 0, "shrinkB": 3} if far else None)
+
+    def along(self, y, words, size=7.5):
+        """Words on a level line through the axes, where they cover least."""
+        probe = self.axes.text(0, 0, words, fontsize=size)
+        extent = probe.get_window_extent(self.renderer)
+        probe.remove()
+        height, gap = extent.height, 2 * self.points
+        level = self.axes.transData.transform((self.axes.get_xlim()[0], y))[1]
+        best, least = None, None
+        for share in (1, 0, 0.75, 0.5, 0.25):
+            for above in (True, False):
+                left = self.box.x0 + share * (self.box.width - 1.08 * extent.width)
+                bottom = level + gap if above else level - gap - height
+                box = (left, bottom, left + 1.08 * extent.width, bottom + height)
+                outside = extent.width * height - _overlap(box, (self.box.x0, self.box.y0, self.box.x1, self.box.y1))
+                cost = 4 * outside + sum(_overlap(box, other) for other in self.taken)
+                if least is None or cost < least:
+                    best, least = (box, share, above), cost
+        box, share, above = best
+        self.taken.append(box)
+        self.axes.annotate(words, (share, y), (3 if share == 0 else -3 if share == 1 else 0, 2 if above else -2), xycoords=("axes fraction", "data"), textcoords="offset points", fontsize=size,
+                           ha="right" if share == 1 else "left" if share == 0 else "center", va="bottom" if above else "top")
 
 
 def _overlap(a, b):

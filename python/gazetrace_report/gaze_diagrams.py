@@ -7,6 +7,7 @@ import numpy
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from . import drawing, words
+from .results import Estimate
 
 LEFT, RIGHT, GAZE, GREEN = "#0072b2", "#d55e00", "#1c1c1c", "#009e73"
 EVENTS = {"fixation": "#7fb7a3", "saccade": "#e0a458", "microsaccade": "#e0a458", "blink": "#9a86b8", "lost": "#c8463c", "pursuit": "#56b4e9"}
@@ -118,23 +119,45 @@ def histogram(name, title, label, values, median, color):
 # Where the eye was ------------------------------------------------------------------------------------------------
 
 
-def _fixations(recording, begin, end):
-    """Fixations with a place: fractions of the picture, or degrees around straight ahead."""
+def _fixations(recording, begin=-numpy.inf, end=numpy.inf):
+    """Fixations with a place: fractions of the picture, or degrees."""
     events = recording.events
     fixations = events[(events.movement == "fixation") & (events.onset_s >= begin) & (events.onset_s <= end)].copy()
     if recording.numbers["kind"] == "direction":
-        fixations["x"] = numpy.degrees(numpy.arctan2(fixations.dx, -fixations.dz))
+        # Azimuths go on where a viewer turns past what lies behind: they are counted from the middle of all directions.
+        middle = numpy.arctan2(events.dx[events.movement == "fixation"].mean(), -events.dz[events.movement == "fixation"].mean())
+        azimuth = numpy.arctan2(fixations.dx, -fixations.dz)
+        fixations["x"] = numpy.degrees(middle + numpy.remainder(azimuth - middle + numpy.pi, 2 * numpy.pi) - numpy.pi)
         fixations["y"] = numpy.degrees(numpy.arctan2(fixations.dy, numpy.hypot(fixations.dx, fixations.dz)))
     else:
         fixations["x"], fixations["y"] = (fixations["u"], fixations["v"]) if "u" in fixations else (numpy.nan, numpy.nan)
     return fixations.dropna(subset=["x", "y"])
 
 
-def _plane(recording, axes, fixations):
+def _directions(recording):
+    """The azimuths and elevations that hold all fixations of the recording, so that its trials have the same axes."""
+    fixations = _fixations(recording)
+    ranges = []
+    for values in (fixations.x, fixations.y):
+        low, high = (values.min(), values.max()) if len(values) else (0, 0)
+        room = max(5, 0.08 * (high - low))
+        ranges.append((low - room, high + room))
+    return ranges
+
+
+def _shape(recording):
+    """Height by width of the axes of what was looked at."""
+    if recording.numbers["kind"] == "direction":
+        (left, right), (low, high) = _directions(recording)
+        return (high - low) / (right - left)
+    return recording.numbers["picture"]["aspect"] if recording.numbers["picture"] else 1
+
+
+def _plane(recording, axes):
     """Axes of what was looked at: the picture in percent of its sides, or degrees."""
     if recording.numbers["kind"] == "direction":
-        reach = min(max(5, *fixations.x.abs(), *fixations.y.abs()) * 1.08, 90) if len(fixations) else 5
-        axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xlabel="azimuth [deg], right", ylabel="elevation [deg], up")
+        across, up = _directions(recording)
+        axes.set(xlim=across, ylim=up, aspect="equal", xlabel="azimuth [deg], right", ylabel="elevation [deg], up")
         return 1
     aspect = recording.numbers["picture"]["aspect"]
     seen = "screen" if recording.numbers["kind"] == "screen" else "picture"
@@ -176,7 +199,7 @@ def heat_map(recording, trial, begin, end, suffix):
         return None
     title = "Heat map" + (f", {trial}" if trial else "")
     with drawing.figure(4.6, 1.3 + 3.9 * min(recording.numbers["picture"]["aspect"], 1.2)) as (fig, axes):
-        aspect = _plane(recording, axes, fixations)
+        aspect = _plane(recording, axes)
         levels = values.copy()
         levels[levels < values.max() / 9] = numpy.nan
         drawn = axes.imshow(levels, extent=(0, 1, 1, 0), aspect=aspect, cmap="inferno", alpha=0.7 if recording.picture is not None else 0.9, vmin=0, vmax=values.max(),
@@ -189,9 +212,8 @@ def heat_map(recording, trial, begin, end, suffix):
 def scanpath(recording, trial, begin, end, suffix):
     fixations = _fixations(recording, begin, end)
     title = "Scanpath" + (f", {trial}" if trial else "")
-    shape = recording.numbers["picture"]["aspect"] if recording.numbers["picture"] else 1
-    with drawing.figure(4.6, 0.6 + 3.9 * min(shape, 1.2)) as (fig, axes):
-        _plane(recording, axes, fixations)
+    with drawing.figure(4.6, 0.6 + 3.9 * min(max(_shape(recording), 0.3), 1.2)) as (fig, axes):
+        _plane(recording, axes)
         axes.set_title(title)
         on_picture = recording.picture is not None and recording.numbers["picture"]
         fill, line = ("#ffd34d", "#ffffff") if on_picture else ("#56b4e9", "#8a8a8a")
@@ -202,8 +224,10 @@ def scanpath(recording, trial, begin, end, suffix):
         note = f"{len(fixations)} fixations, area by duration"
         if 0 < len(fixations) <= MOST_NUMBERED:
             labels = drawing.Labels(fig, axes)
-            for number, (x, y) in enumerate(zip(fixations.x, fixations.y), 1):
-                labels.put(x, y, str(number), drawing.INK if not on_picture else "#ffffff", 7)
+            for x, y, radius in zip(fixations.x, fixations.y, radii):
+                labels.keep_clear(Estimate(x), Estimate(y), radius)
+            for number, (x, y, radius) in enumerate(zip(fixations.x, fixations.y, radii), 1):
+                labels.put(x, y, str(number), drawing.INK if not on_picture else "#ffffff", 7, radius)
             note += ", numbered in their order"
         if recording.numbers["picture"]:
             beside = int(((fixations.x < 0) | (fixations.x > 1) | (fixations.y < 0) | (fixations.y > 1)).sum())
@@ -214,18 +238,26 @@ def scanpath(recording, trial, begin, end, suffix):
 # Over time --------------------------------------------------------------------------------------------------------
 
 
-def thinned(seconds, values):
-    """The lowest and highest value of each column, so that no excursion is lost; NaN stays a gap."""
-    if len(values) <= 2 * MOST_COLUMNS:
-        return seconds, values
-    size = -(-len(values) // MOST_COLUMNS)
+def thinned(seconds, values, size):
+    """The lowest and highest of each `size` values, so that no excursion is lost."""
     padded = numpy.append(values, numpy.full(-len(values) % size, numpy.nan)).reshape(-1, size)
     known = numpy.isfinite(padded)
     some = known.any(1)
     low = numpy.where(some, numpy.where(known, padded, numpy.inf).min(1), numpy.nan)
     high = numpy.where(some, numpy.where(known, padded, -numpy.inf).max(1), numpy.nan)
-    begins = seconds[::size]
-    return numpy.repeat(begins, 2), numpy.stack([low, high], 1).ravel()
+    return numpy.repeat(seconds[::size], 2), numpy.stack([low, high], 1).ravel()
+
+
+def course(seconds, values):
+    """Times and values of a line: it ends where samples are missing, and is thinned between such gaps."""
+    gap = 3 * numpy.median(numpy.diff(seconds))
+    ends = numpy.flatnonzero(numpy.diff(seconds) > gap) + 1
+    parts = zip(numpy.split(seconds, ends), numpy.split(numpy.asarray(values, float), ends))
+    if len(values) > 2 * MOST_COLUMNS:
+        size = -(-len(values) // MOST_COLUMNS)
+        parts = (thinned(*part, size) for part in parts)
+    times, values = zip(*((numpy.append(t, t[-1]), numpy.append(v, numpy.nan)) for t, v in parts))
+    return numpy.concatenate(times)[:-1], numpy.concatenate(values)[:-1]
 
 
 def courses(recording):
@@ -240,7 +272,7 @@ def courses(recording):
         made.append(_course(recording, name, title, label, [(eye, samples[prefix + column], color) for eye, prefix, color in eyes], name.startswith("x")))
     if both and recording.vergence is not None:
         kind = "deg" if "horizontal_deg" in recording.vergence else "share_or_px"
-        made.append(_course(recording, "disparity_over_time", "Disparity: place of the left eye less that of the right", f"disparity [{unit}]",
+        made.append(_course(recording, "disparity_over_time", "Disparity: left eye less right eye", f"disparity [{unit}]",
                             [("horizontal", recording.vergence[f"horizontal_{kind}"], GAZE), ("vertical", recording.vergence[f"vertical_{kind}"], GREEN)]))
         vergence = numbers["vergence"]
         if vergence.get("missing"):
@@ -265,18 +297,14 @@ def _course(recording, name, title, label, lines, with_events=False):
     # The outermost values in a thousand are noise at the edges of losses more often than gaze.
     low, high = numpy.quantile(known, [0.001, 0.999])
     room = max(0.06 * (high - low), 1e-3 * max(abs(high), 1e-6))
-    gap = 3 * numpy.median(numpy.diff(seconds))
     with drawing.figure(5.8, 2.1) as (fig, axes):
         axes.set(xlabel="time [s]", ylabel=label, ylim=(low - room, high + room), xlim=(seconds[0], max(seconds[-1], seconds[0] + 1e-3)), title=title)
         for line, values, color in lines:
-            values = numpy.asarray(values, float).copy()
-            at = numpy.flatnonzero(numpy.diff(seconds) > gap) + 1
-            times = numpy.insert(seconds, at, seconds[at - 1] if len(at) else [])
-            axes.plot(*thinned(times, numpy.insert(values, at, numpy.nan)), color=color, lw=0.7, label=line)
+            axes.plot(*course(seconds, values), color=color, lw=0.7, label=line)
         if with_events:
             _shade(axes, recording)
         if len(lines) > 1:
-            axes.legend(loc="upper right", ncol=2)
+            axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncol=2, borderaxespad=0.2)  # in the line of the title, clear of the course
         return Diagram(name, title, drawing.svg_of(fig, title), "time", ("Shaded: no usable gaze." + (" Dotted: where trials begin." if len(recording.trials()) > 1 else "")) if with_events else "")
 
 

@@ -49,18 +49,54 @@ class GazeReport(reports.ReportTest):
         (self.folder / "--tables").write_text((self.folder / "log.csv").read_text())
         self.made(main, "-o", "dashes.html", "--", "--tables")
         self.assertIn(f"{numbers['quality'][0]['samples']} samples", (self.folder / "dashes.html").read_text())
-        # The page's numbers are those of the measurement.
-        quality, events = reports.Page(page).tables
-        measured = json.loads(self.run_ok("gaze", "measure", "log.csv", "--json").stdout)
-        self.assertEqual(measured["quality"], numbers["quality"])
-        shown = {row[0]: row[1] for row in quality[1:]}
-        q = measured["quality"][0]
-        for name, value, unit, digits in (("Sampling rate", q["sampling_rate_hz"], "Hz", 4), ("Data loss", 100 * q["data_loss"], "%", 3),
-                                          ("Precision, RMS-S2S", q["precision_rms_s2s"], "deg", 3), ("Precision, SD", q["precision_sd"], "deg", 3)):
-            self.assertEqual(shown[name].split(" ")[1], unit)
-            self.assertEqual(float(shown[name].split(" ")[0]), float(f"{value:.{digits}g}"))
-        self.assertEqual((shown["Samples"], shown["Accuracy, mean"]), (str(q["samples"]), "not known"))
-        self.assertEqual({row[0]: row[1] for row in events[1:]}, {name: str(of["count"]) for name, of in measured["events"].items() if of["count"]})
+
+    def test_the_numbers_are_those_of_the_measurement(self):
+        """Both tables and the headline: each figure is that of the JSON, of one eye and of two with doubtful events."""
+        self.run_ok("gaze", "synth", "-o", "log.csv", "--duration", "5s", "--noise", "0.05")
+        both_eyes = harness.SOURCE / "gazelogs/bids/sub-01_task-view_recording-eye1_physio.tsv.gz"
+        units = {"Sampling rate": ("sampling_rate_hz", "Hz", 4), "Effective rate": ("effective_rate_hz", "Hz", 4), "Data loss": ("data_loss", "%", 3),
+                 "Accuracy, mean": ("accuracy_deg", "deg", 3), "Accuracy, worst": ("accuracy_max_deg", "deg", 3), "Precision, RMS-S2S": ("precision_rms_s2s", "deg", 3),
+                 "Precision, SD": ("precision_sd", "deg", 3), "Recorded": ("duration_s", "s", 5), "Samples": ("samples", "", None)}
+        for log, columns in (("log.csv", 1), (both_eyes, 3)):
+            self.made(main, log, "-o", "page.html", "--json", "page.json", "--overwrite")
+            page = reports.Page((self.folder / "page.html").read_text())
+            numbers = json.loads((self.folder / "page.json").read_text())
+            measured = json.loads(self.run_ok("gaze", "measure", log, "--json").stdout)
+            self.assertEqual((measured["quality"], measured["events"]), (numbers["quality"], numbers["events"]))
+            tables_left = dict(page.captioned)
+            quality = tables_left.pop("Quality of the data")
+            self.assertEqual(quality[0][1:], [of["of"] for of in measured["quality"]])
+            self.assertEqual((len(quality[0]), [row[0] for row in quality[1:]]), (1 + columns, list(units)))
+
+            def shows(text, name, of):
+                key, unit, digits = units[name]
+                if digits is None or of[key] is None:
+                    self.assertEqual(text, "not known" if of[key] is None else str(of[key]))
+                else:
+                    figure, _, shown_unit = text.partition(" ")
+                    self.assertEqual(shown_unit, unit)
+                    self.assert_shows(figure, 100 * of[key] if unit == "%" else of[key], digits)
+
+            for name, *cells in quality[1:]:
+                for text, of in zip(cells, measured["quality"], strict=True):
+                    shows(text, name, of)
+            events = tables_left.pop(f"Events by {measured['method']}")
+            self.assertEqual(events[0], ["", "count", "median duration", "middle half", "median amplitude"])
+            self.assertEqual([row[0] for row in events[1:]], [name for name, of in measured["events"].items() if of["count"] and name != "unclassified"])
+            for name, count, median, half, amplitude in events[1:]:
+                of = measured["events"][name]
+                self.assertEqual((count, median[-3:], half[-3:]), (str(of["count"]), " ms", " ms"))
+                for text, key in zip((median[:-3], *half[:-3].split(" to ")), ("median", "q1", "q3"), strict=True):
+                    self.assertLessEqual(abs(float(text) - of[f"duration_ms_{key}"]), 0.5)
+                if of["amplitude_deg_median"] is None:
+                    self.assertEqual(amplitude, "")
+                else:
+                    self.assertLessEqual(abs(float(amplitude.removesuffix(" deg")) - of["amplitude_deg_median"]), 0.005)
+            self.assertEqual(tables_left, {}, "of these this test reads no figure")
+            said = re.fullmatch(r"(\d+) samples in ([\d.]+ s), (\d+) fixations, data loss (.*)", page.headline)
+            for text, name in ((said[1], "Samples"), (said[2], "Recorded"), (said[4], "Data loss")):
+                shows(text, name, measured["quality"][0])
+            self.assertEqual(said[3], str(measured["events"]["fixation"]["count"]))
 
     def test_logs_of_which_little_is_known(self):
         """One sample, none that is usable, no screen: what is not known is said to be."""
@@ -121,6 +157,54 @@ class GazeReport(reports.ReportTest):
         self.assertNotIn("TRIALID", (self.folder / "named.html").read_text())
         self.made(main, *options, "--keep-ids")
         self.assertIn("trial 2: TRIALID 2", (self.folder / "named.html").read_text())
+
+    def test_lines_over_time_end_where_nothing_was_recorded(self):
+        """However many samples there are; and no excursion is lost."""
+        import numpy
+        from gazetrace_report import gaze_diagrams
+        for count in (400, 9000):
+            seconds = numpy.arange(count) * 0.001
+            seconds[count // 2:] += 2
+            values = numpy.linspace(0, 1, count)
+            values[7] = 5
+            times, drawn = gaze_diagrams.course(seconds, values)
+            self.assertLess(len(times), 3000)
+            self.assertEqual((numpy.nanmax(drawn), numpy.nanmin(drawn)), (5, 0))
+            inside = numpy.flatnonzero(numpy.diff(times) > 1)
+            self.assertEqual(len(inside), 1)
+            self.assertTrue(numpy.isnan(drawn[inside[0]]) or numpy.isnan(drawn[inside[0] + 1]))
+            self.assertEqual(numpy.isnan(drawn).sum(), 1)
+
+    def test_numbers_of_a_scanpath_stand_clear(self):
+        """Of each other and of the discs, where there is room; all fixations of a head that turns are on its axes."""
+        import numpy
+        import pandas
+        from matplotlib.text import Text
+        from gazetrace_report import drawing, gaze_diagrams
+        with drawing.figure(4.6, 3.9) as (fig, axes):
+            axes.set(xlim=(0, 1), ylim=(1, 0))
+            discs = [(0.5, 0.5, 14), (0.52, 0.5, 5), (0.48, 0.53, 9), (0.8, 0.2, 3)]
+            labels = drawing.Labels(fig, axes)
+            for x, y, radius in discs:
+                labels.keep_clear(gaze_diagrams.Estimate(x), gaze_diagrams.Estimate(y), radius)
+            for number, (x, y, radius) in enumerate(discs, 1):
+                labels.put(x, y, str(number), "#000000", 7, radius)
+            fig.canvas.draw()
+            drawn = [Text.get_window_extent(text) for text in axes.texts if text.get_text()]  # without the line to its disc
+            self.assertEqual(len(drawn), 4)
+            for i, box in enumerate(drawn):
+                self.assertFalse([other for other in drawn[:i] if box.overlaps(other)])
+                for x, y, radius in discs:
+                    middle = axes.transData.transform((x, y))
+                    nearest = numpy.clip(middle, (box.x0, box.y0), (box.x1, box.y1))
+                    self.assertGreater(numpy.hypot(*(nearest - middle)), radius * fig.dpi / 72 * 0.8)
+        azimuths = numpy.radians([150, 170, -170, -150])  # to the right, past the back
+        events = pandas.DataFrame({"movement": "fixation", "onset_ns": range(4), "dx": numpy.sin(azimuths), "dy": 0.1, "dz": -numpy.cos(azimuths)})
+        recording = gaze_diagrams.Recording({"first_ns": 0, "kind": "direction", "picture": None, "trials": []}, events, pandas.DataFrame({"t_ns": range(4)}))
+        across = numpy.sort(gaze_diagrams._fixations(recording).x)
+        numpy.testing.assert_allclose(numpy.diff(across), 20)
+        (left, right), _ = gaze_diagrams._directions(recording)
+        self.assertTrue(left < across[0] and across[-1] < right < left + 90)
 
     def test_a_picture_behind_the_places(self):
         self.run_ok("gaze", "synth", "-o", "log.csv", "--duration", "3s")

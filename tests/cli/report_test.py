@@ -84,24 +84,113 @@ class Report(reports.ReportTest):
         self.assertEqual(len(ids), len(set(ids)), "an id is used once, also by those of drawings")
 
     def test_the_numbers_are_those_of_the_results(self):
+        """Every table, the headline, the sentences and the frame viewer: each figure is that of results.json."""
+        raw = self.results
+        foveated, uniform, few = raw["rows"]
+        few["reached"] = estimate(1.04321, 1.01234, 1.07654)
+        for i, one in enumerate(raw["rows"]):  # what the small renderings did not measure
+            one.update(rays=int(12345.6 * 987 ** i), peak_mib=321.987 * (i + 1), efficiency=2.345678 / (i + 1))
+        foveated["published"] = [{"speed_up": 57.2534, "source": "Table 1"}]
+        for part, score in foveated["scores"]["flip"].items():  # the same cost without foveation is better, everywhere or here
+            few["scores"]["flip"][part] = {key: value if value is None or key == "resolved" else value / 10 for key, value in score.items()}
+        raw["fixed_quality"] += [{"metric": "mse", "at": 0.0123456, "scene": "box", "gaze": "glide", "speed_up": 3.141593, "model_gain": 1.234567, "bound": ">"}]
+        raw["controls"] += [{"scene": "box", "gaze": "glide", "metric": "flip fovea", "of": "fov", "wrong": "center", "right_score": 0.1234567, "wrong_score": 0.7654321,
+                             "sensitive": True, "why": ""}]
+        raw["shares"] = {"glide": {"fixation": 0.8126, "in-flight": 0.1874}}
+        self.write("results.json", json.dumps(raw))
         page = reports.Page(self.page_of()[0])
-        runs = next(table for table in page.tables if table[0][0] == "run" and "speed-up" in table[0])
-        metrics = [name.split("|")[0] for name in runs[0][3:]]
-        self.assertEqual(metrics, list(small_results.METRICS))
-        seen = 0
-        for shown in runs[1:]:
-            label, role = shown[0].split("|")
-            found = [one for one in self.results["rows"] if one["label"] == label and ROLES[one["role"]].words == role]
-            if not found:
-                self.assertEqual(role, "floor")
+        tables_left = dict(page.captioned)
+        self.assertEqual(len(tables_left), len(page.tables))
+        by_name = {f"{one['label']}|{ROLES[one['role']].words}": one for one in raw["rows"]}
+
+        runs = tables_left.pop("box, gaze glide")
+        self.assertEqual(runs[0], ["run", "time|s a frame", "speed-up", *(f"{name}|{better} is better" for name, better in small_results.METRICS.items())])
+        for name, *cells in runs[1:]:
+            name, reached = name.removesuffix(" of its time").split(": ") if "of its time" in name else (name, None)
+            if name == "reference from itself|floor":
+                self.assertEqual(cells[:2], ["", ""])
+                for metric, cell in zip(small_results.METRICS, cells[2:]):
+                    self.assert_shows(cell, raw["scenes"][0]["reference"]["floor"].get(metric, {}).get("whole"))
                 continue
-            values = [found[0]["time_s"], found[0]["speed_up"], *(found[0]["scores"][metric]["whole"] for metric in metrics)]
-            for text, value in zip(shown[1:], values, strict=True):
-                mean, between = text.split("|")
-                self.assertEqual(float(mean), float(f"{value['mean']:.4g}"))
-                self.assertEqual([float(part) for part in between.split(" to ")], [float(f"{value[key]:.4g}") for key in ("low", "high")])
-                seen += 3
-        self.assertEqual(seen, 3 * 3 * (2 + len(metrics)))
+            one = by_name[name]
+            if reached:
+                self.assert_shows_estimate(reached.replace(" (", "|").rstrip(")"), one["reached"])
+            values = [one["time_s"], one["speed_up"], *(one["scores"][metric]["whole"] for metric in small_results.METRICS)]
+            for cell, value in zip(cells, values, strict=True):
+                self.assert_shows_estimate(cell, value)
+        self.assertEqual(len(runs), 1 + 3 + 1)
+
+        costs = tables_left.pop("Cost, box, gaze glide")
+        self.assertEqual(costs[0], ["run", "samples a pixel", "samples", "rays", "peak|MiB", "end-to-end|with output", "efficiency"])
+        for name, *cells in costs[1:]:
+            for cell, key in zip(cells, ("spp_mean", "samples", "rays", "peak_mib", "end_to_end", "efficiency"), strict=True):
+                self.assert_shows(cell, by_name[name][key])
+        self.assertEqual(len(costs), 1 + 3)
+
+        shares = dict(zip(Results(self.folder).bands, raw["band_pixel_share"]["glide"]))
+        for metric, better in small_results.METRICS.items():
+            by_part = tables_left.pop(f"{metric}, {better} is better")
+            parts = [head.split("|")[0].removesuffix(" deg") for head in by_part[0][1:]]
+            self.assertLessEqual({"0-2.6", "2.6-5.2"}, set(parts))
+            for head in by_part[0][1:]:
+                part, _, share = head.partition(" deg|")
+                if share:
+                    self.assert_shows(share.removesuffix(" % of pixels"), 100 * shares[part], 3)
+            for name, *cells in by_part[1:]:
+                for part, cell in zip(parts, cells, strict=True):
+                    self.assert_shows_estimate(cell, by_name[name]["scores"][metric].get(part))
+            self.assertEqual(len(by_part), 1 + 3)
+
+        # Verdicts, by whether intervals are apart.
+        whole = {}
+        for metric, better in small_results.METRICS.items():
+            ours, theirs = foveated["scores"][metric]["whole"], few["scores"][metric]["whole"]
+            less, more = ours["high"] < theirs["low"], theirs["high"] < ours["low"]
+            whole[metric] = ("better" if less == (better == "lower") else "worse") if less or more else "not told apart"
+        tally = tables_left.pop("How many foveated runs scored better or worse in whole frames, beside uniform sampling of the same cost")
+        self.assertEqual([(row[1], row[2:5]) for row in tally[1:]],
+                         [(metric, [str(int(came_out == verdict)) for verdict in ("better", "worse", "not told apart")]) for metric, came_out in whole.items()])
+        counts = [list(whole.values()).count(verdict) for verdict in ("better", "worse", "not told apart")]
+        said = re.fullmatch(r"Foveated frames were rendered ([\d.]+) times as fast .* better in (\d+) of 4 comparisons, worse in (\d+), and not told apart in (\d+)\.", page.headline)
+        self.assertEqual([int(count) for count in said.groups()[1:]], counts)
+        self.assert_shows(said[1], foveated["speed_up"]["mean"])
+        losses = tables_left.pop("Where uniform sampling of the same cost scored better")
+        self.assertEqual(losses[0], ["metric", "in", "foveated", "uniform", "uniform run", "foveated run"])
+        places = {words.part(part): part for part in foveated["scores"]["flip"]}
+        for metric, part, ours, theirs, *_ in losses[1:]:
+            for shown, one in ((ours, foveated), (theirs, few)):
+                self.assert_shows_estimate(shown, one["scores"][metric][places[part]])
+        self.assertIn("the whole frame", [row[1] for row in losses[1:] if row[0] == "flip"])
+
+        ((place, run, here, there, where),) = tables_left.pop("Speed-up beside what was published")[1:]
+        self.assertEqual((place, run, where), ("box, gaze glide", foveated["label"], "Table 1"))
+        self.assert_shows_estimate(here, foveated["speed_up"])
+        self.assert_shows(there, 57.2534)
+        fixed = tables_left.pop("Speed-up at fixed quality")[1:]
+        self.assertEqual([row[1] for row in fixed], ["flip", "mse"])
+        for (_, _, at, speed, model, why), one in zip(fixed, raw["fixed_quality"], strict=True):
+            self.assert_shows(at, one["at"])
+            self.assert_shows(model, one.get("model_gain"))
+            if one["speed_up"] is None:
+                self.assertEqual((speed, why), ("not known", one["why"]))
+            else:
+                bound, _, value = speed.partition(" ")
+                self.assertEqual(bound, one["bound"])
+                self.assert_shows(value, one["speed_up"])
+        controls = tables_left.pop("The same settings rendered with a wrong gaze and scored with the right one")[1:]
+        for (_, metric, gaze, right, wrong, *_), one in zip(controls, raw["controls"], strict=True):
+            self.assertEqual((metric, gaze), (one["metric"], one["wrong"]))
+            self.assert_shows(right, one["right_score"])
+            self.assert_shows(wrong, one["wrong_score"])
+        self.assertEqual(tables_left, {}, "of these this test reads no figure")
+
+        self.assertIn("frames: fixation 81.3 % and in-flight 18.7 %.", page.text)
+        self.assertIn("speed-up at mse 0.01235 is &gt; 3.142", page.text)
+        self.assertIn("fovvideovdp is 9.2 when the gaze is mirrored, against 9.1 when it is right", page.text)
+        for run in json.loads(page.scripts["data"])["sets"][0]["runs"][1:]:  # the script shows four digits of these
+            one = next(one for one in raw["rows"] if one["label"] == run["label"])
+            self.assertEqual(run["times"], [frame["time_s"] for frame in one["frames"]])
+            self.assertEqual(run["scores"], [frame["scores"] for frame in one["frames"]])
 
     def test_diagrams_and_their_numbers(self):
         self.made(main, "results.json", "-o", "out.html", "--plots", "plots")

@@ -4,6 +4,7 @@
 import contextlib
 import importlib.util
 import io
+import math
 import os
 import re
 import sys
@@ -29,11 +30,13 @@ from gazetrace_report.errors import EXIT_CODES, Error  # noqa: E402
 
 
 class Page(HTMLParser):
-    """Texts of scripts by their id, everything that could lead out of the page, and the tables as lists of rows."""
+    """Texts of scripts by their id, everything that could lead out of the page, the tables as lists of rows, also by their
+    captions, and the headline."""
 
     def __init__(self, text):
         super().__init__()
         self.scripts, self.links, self.tables, self.open_script, self.cell = {}, [], [], None, None
+        self.captioned, self.headline, self.paragraph, self.paragraph_kind = {}, "", None, ""
         self.text = text
         self.feed(text)
 
@@ -41,8 +44,11 @@ class Page(HTMLParser):
         attributes = dict(attributes)
         if tag == "script":
             self.open_script = attributes.get("id", "")
+        elif tag == "p":
+            self.paragraph, self.paragraph_kind = "", attributes.get("class", "")
         elif tag == "table":
             self.tables.append([])
+            self.captioned[self.caption] = self.tables[-1]
         elif tag == "tr":
             self.tables[-1].append([])
         elif tag in ("th", "td"):
@@ -54,6 +60,10 @@ class Page(HTMLParser):
     def handle_endtag(self, tag):
         if tag == "script":
             self.open_script = None
+        elif tag == "p":
+            if self.paragraph_kind in ("caption", "headline"):
+                setattr(self, self.paragraph_kind, self.paragraph)
+            self.paragraph = None
         elif tag in ("th", "td"):
             self.tables[-1][-1].append(self.cell.strip())
             self.cell = None
@@ -63,6 +73,8 @@ class Page(HTMLParser):
             self.scripts[self.open_script] = self.scripts.get(self.open_script, "") + data
         if self.cell is not None:
             self.cell += data
+        if self.paragraph is not None:
+            self.paragraph += data
 
 
 class ReportTest(harness.CliTest):
@@ -97,6 +109,29 @@ class ReportTest(harness.CliTest):
             self.assertIn(word.lower(), err.lower())
         self.assertEqual(out, "")
         self.assertEqual(set(self.files()), before)
+
+    def assert_shows(self, text, value, digits=4):
+        """A figure of a page, or a dash for none, is the value to so many digits."""
+        if value is None:
+            self.assertEqual(text, "–")
+            return
+        figure, _, unit = text.partition(" ")
+        shown = float(figure) * {"": 1, "k": 1e3, "M": 1e6, "G": 1e9}[unit]
+        last_digit = 10.0 ** (math.floor(math.log10(abs(value))) - digits + 1) if value else 0
+        self.assertLessEqual(abs(shown - value), 0.5001 * last_digit, f"{text} for {value}")
+
+    def assert_shows_estimate(self, text, value):
+        """A mean, and below it the interval, which may be marked as unresolved in its place."""
+        value = value or {"mean": None}
+        mean, _, between = text.partition("|")
+        self.assert_shows(mean, value["mean"])
+        if value["mean"] is None or value.get("low") is None:
+            self.assertEqual(between, "")
+        elif not value.get("resolved", True):
+            self.assertEqual(between, "unresolved")
+        else:
+            for shown, bound in zip(between.split(" to "), (value["low"], value["high"]), strict=True):
+                self.assert_shows(shown, bound)
 
     def assert_stands_alone(self, text):
         for link in Page(text).links:
