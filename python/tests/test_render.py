@@ -125,6 +125,8 @@ class RenderTest(TestCase):
     def test_keyboard_interrupt_in_the_middle_of_a_frame(self):
         job = gazetrace.Job(scene=COURTYARD, size=(1280, 720), sampling="uniform", spp=256)
         rendering = job.render()
+        # A shell that starts this in the background has its children ignore the signal.
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
         timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
         timer.start()
         with self.assertRaises(KeyboardInterrupt):
