@@ -191,6 +191,7 @@ PipelineSettings pipeline_settings(const JobSettings& job) {
   settings.trace.only_pixel = job.only_pixel;
   settings.trace.show_environment = !job.exr.alpha;
   settings.trace.guides = show_first_hits(job.exr.aovs);
+  settings.layers = layer_settings(job.exr);
   settings.reconstruction = {filter_of(job).name};
   settings.accumulate = accumulate_of(job);
   settings.exposure = job.exposure;

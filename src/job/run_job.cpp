@@ -17,17 +17,16 @@ struct AovsOfMemory {
   LayerSettings layers;
 };
 
-// AOVs that no EXR is to hold are no mistake where frames are looked at in memory. Takes them out of the job.
+// AOVs that no EXR is to hold are no mistake where frames are looked at in memory. Takes such ones out of the job.
 AovsOfMemory take_aovs_of_memory(JobSettings& settings) {
-  OutputSettings output = pipeline_settings(settings).output;
-  if (!output.exr.pattern.empty()) {
-    return {};
+  const PipelineSettings pipeline = pipeline_settings(settings);
+  OutputSettings output = pipeline.output;
+  if (output.exr.pattern.empty()) {
+    output.exr.pattern = "frame.####.exr";
+    check_output_settings(output, false);
+    settings.exr.aovs.clear();
   }
-  output.exr.pattern = "frame.####.exr";
-  check_output_settings(output, false);
-  const AovsOfMemory aovs{pipeline_settings(settings).trace.guides, layer_settings(output.exr)};
-  settings.exr.aovs.clear();
-  return aovs;
+  return {pipeline.trace.guides, pipeline.layers};
 }
 
 // Pictures go through the view, and so does the judging of a sequence's quality.

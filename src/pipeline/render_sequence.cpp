@@ -13,7 +13,6 @@
 #include "gazetrace/build_info.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/pipeline.hpp"
-#include "output/aovs.hpp"
 #include "pipeline/file_journal.hpp"
 #include "pipeline/frame_files.hpp"
 #include "pipeline/frame_stages.hpp"
@@ -31,8 +30,6 @@ FrameSettings frame_settings(const PipelineSettings& settings, const ColorPipeli
   FrameSettings frame = settings;
   frame.frames_per_second = static_cast<double>(settings.fps.numerator) / static_cast<double>(settings.fps.denominator);
   frame.display_curve = [&color](double exposure_ev) { return view_display_curve(color, {}, exposure_ev); };
-  frame.trace.guides = frame.trace.guides || show_first_hits(settings.output.exr.aovs);
-  frame.layers = layer_settings(settings.output.exr);
   return frame;
 }
 
