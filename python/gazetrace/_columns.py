@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Columns by name: what plans, timing and gaze logs are made of."""
 
+import difflib
+
 import numpy as np
 
 
@@ -30,6 +32,18 @@ def as_array(values):
     if known and len(known) == len(values) and all(isinstance(value, int) for value in known):
         return np.array(values, dtype=np.int64)
     return np.array([np.nan if value is None else value for value in values], dtype=float)
+
+
+def unknown(what, name, known):
+    """Words for a name that is not there."""
+    near = difflib.get_close_matches(str(name), known, 1)
+    return f"unknown {what} {name!r}" + (f"; did you mean {near[0]!r}?" if near else "") + f" Known: {', '.join(known)}"
+
+
+def column_of(columns, name):
+    if name not in columns:
+        raise KeyError(unknown("column", name, list(columns)))
+    return columns[name]
 
 
 def columns_of(items):

@@ -5,6 +5,8 @@ import datetime
 import numbers
 import os
 
+import numpy as np
+
 from . import _core
 
 
@@ -27,6 +29,8 @@ def one_text(value):
 
 def duration_text(value):
     """Seconds, or a timedelta, as the schemas read durations; texts such as "50ms" stay."""
+    if isinstance(value, np.timedelta64):
+        return f"{value / np.timedelta64(1, 'us'):.0f}us"
     if isinstance(value, datetime.timedelta):
         return f"{value // datetime.timedelta(microseconds=1)}us"
     if isinstance(value, numbers.Real) and not isinstance(value, bool):

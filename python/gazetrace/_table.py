@@ -5,7 +5,7 @@ import html
 
 import numpy as np
 
-from ._columns import frame_of
+from ._columns import column_of, frame_of, unknown
 
 SHOWN = 8  # rows of a table in a notebook
 
@@ -24,6 +24,13 @@ def as_html(columns, title):
     return f"<p><b>{html.escape(title)}</b></p><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{more}"
 
 
+def row_of(columns, index, count):
+    """A row as a dictionary."""
+    if not -count <= index < count:
+        raise IndexError(f"there is no row {index}: there are {count}")
+    return {name: values[index].item() if np.ndim(values[index]) == 0 and hasattr(values[index], "item") else values[index] for name, values in columns.items()}
+
+
 class Table:
     """Columns by name: `table["u"]` or `table.u` is an array, `table[3]` a row as a dictionary, `table[2:5]` and
     `table[table.u < 0.5]` are tables of those rows; iterating gives the rows."""
@@ -39,16 +46,16 @@ class Table:
 
     def __getitem__(self, key):
         if isinstance(key, str):
-            return self.columns[key]
+            return column_of(self.columns, key)
         if isinstance(key, (int, np.integer)):
-            if not -len(self) <= key < len(self):
-                raise IndexError(key)
-            return {name: values[key].item() if values[key].ndim == 0 else values[key] for name, values in self.columns.items()}
+            return row_of(self.columns, key, len(self))
         return type(self)({name: values[key] for name, values in self.columns.items()})
 
     def __getattr__(self, name):
-        if name.startswith("_") or name not in self.columns:
+        if name.startswith("_"):
             raise AttributeError(name)
+        if name not in self.columns:
+            raise AttributeError(unknown("column", name, [one for one in dir(self) if not one.startswith("_")]))
         return self.columns[name]
 
     def __dir__(self):

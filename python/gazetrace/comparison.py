@@ -8,9 +8,10 @@ from itertools import zip_longest
 import numpy as np
 
 from . import _core
-from ._columns import columns_of, frame_of
+from ._columns import columns_of, frame_of, unknown
 from ._errors import Error
 from ._options import as_texts, split
+from ._table import as_html
 from .rendering import Frame
 
 _FIRST_METRICS = ["mse", "relmse", "psnr", "ssim", "flip"]
@@ -252,7 +253,7 @@ class ComparisonResult:
         for scores in self.headline["scores"]:
             if scores["metric"] == metric:
                 return scores
-        raise KeyError(metric)
+        raise KeyError(unknown("metric", metric, self.metrics))
 
     def __getitem__(self, metric):
         return self.scores(metric)["value"]
@@ -279,5 +280,8 @@ class ComparisonResult:
         return frame_of(self.columns)
 
     def __repr__(self):
-        values = ", ".join(f"{metric}={self[metric]}" for metric in self.metrics)
+        values = ", ".join(f"{metric}={'not known' if self[metric] is None else format(self[metric], '.4g')}" for metric in self.metrics)
         return f"<ComparisonResult of {len(self.frames)} frames: {values}>"
+
+    def _repr_html_(self):
+        return as_html(self.columns, repr(self)[1:-1])

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from . import _core
-from ._columns import as_array, columns_of, flattened, frame_of
+from ._columns import as_array, column_of, columns_of, flattened, frame_of
 from ._errors import Error, warn
 from ._options import split
 from ._table import Events, Table, as_html
@@ -40,7 +40,7 @@ class GazeLog:
 
     def __getitem__(self, key):
         if isinstance(key, str):
-            return self.columns[key]
+            return column_of(self.columns, key)
         if not isinstance(key, slice) or key.step not in (None, 1):
             raise TypeError("a log is cut by a slice without a step, such as log[100:200]; its arrays take any index")
         begin, end, _ = key.indices(len(self))
@@ -118,7 +118,8 @@ class GazeLog:
         if not len(self):
             return f"<GazeLog {Path(self.source).name}: no sample>"
         seconds = self.t_s[-1]
-        rate = f", {(len(self) - 1) / seconds:.4g} Hz" if seconds > 0 else ""
+        step = np.median(np.diff(self.t_ns)) if seconds > 0 else 0  # whatever pauses there are between blocks
+        rate = f", {1e9 / step:.4g} Hz" if step > 0 else ""
         return (f"<GazeLog {Path(self.source).name}: {len(self)} samples of {KINDS.get(self.kind, 'gaze on a picture')} in {seconds:.4g} s{rate}, "
                 f"{100 * self.valid.mean():.3g} % usable>")
 
@@ -133,10 +134,21 @@ def write_log(gaze, path):
         return
     t_ns, u, v = _columns_of_gaze(gaze)
     known = np.isfinite(u) & np.isfinite(v)
+    _check(t_ns, u[known], v[known])
     with open(path, "w", encoding="utf-8") as file:
         file.write("# gazetrace-gaze 1\nt[ns],u[1],v[1],valid,eye\n")
         for row in zip(t_ns, u, v, known):
             file.write("{},{!r},{!r},{},cyclopean\n".format(int(row[0]), float(row[1]), float(row[2]), "ok" if row[3] else "lost"))
+
+
+def _check(t_ns, u, v):
+    back = np.flatnonzero(np.diff(t_ns) < 0)
+    if len(back):
+        raise Error(f"`gaze`: times go on from row to row, and row {back[0] + 1} is at {t_ns[back[0] + 1] * 1e-9:g} s after {t_ns[back[0]] * 1e-9:g} s; sort the rows")
+    far = np.maximum(abs(u - 0.5), abs(v - 0.5)) > 1.5
+    if far.mean() > 0.5 if len(far) else False:
+        raise Error(f"`gaze`: u and v are fractions of the screen, 0 at its left and top and 1 at its right and bottom, and most of these lie far beside it, such as "
+                    f"{u[far][0]:g}, {v[far][0]:g}; divide pixels by the size of the screen")
 
 
 def _columns_of_gaze(gaze):

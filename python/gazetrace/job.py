@@ -13,7 +13,7 @@ from . import _core
 from ._errors import Error, warn
 from ._exr import write_gray_exr
 from ._options import by_name, texts_of
-from .gaze import write_log
+from .gaze import GazeLog, write_log
 from .plan import Plan
 from .rendering import Rendering
 
@@ -46,6 +46,7 @@ class Job:
     def __init__(self, path=None, /, *, density=None, gaze=None, **options):
         self._core = _core.Job()
         self._folders = []
+        self._written = {}  # what stands in temporary files, for people
         if path is not None:
             self._core.add_file(os.fspath(path))
         self._set(options, density, gaze)
@@ -61,7 +62,7 @@ class Job:
         """Another job, with these options on top."""
         other = Job()
         other._core = _core.Job(self._core)
-        other._folders = list(self._folders)
+        other._folders, other._written = list(self._folders), dict(self._written)
         other._set(options, density, gaze)
         return other
 
@@ -84,12 +85,14 @@ class Job:
             return os.fspath(gaze)
         path = self._new_folder() / "gaze.csv"
         write_log(gaze, path)
+        self._written[os.fspath(path)] = repr(gaze) if isinstance(gaze, GazeLog) else f"<gaze of {len(gaze['u'] if hasattr(gaze, 'keys') else gaze)} samples>"
         return os.fspath(path)
 
     def _density_text(self, density):
         if isinstance(density, (str, os.PathLike)):
             return os.fspath(density)
         folder = self._new_folder()
+        self._written.update({os.fspath(folder / name): "<array>" for name in ("density.####.exr", "density.exr")})
         if isinstance(density, dict):
             for frame, array in density.items():
                 write_gray_exr(folder / f"density.{int(frame):04d}.exr", array)
@@ -112,7 +115,8 @@ class Job:
         given = {
             name: self[name] for name in _OPTIONS if self._core.values(name) != list(_OPTIONS[name]["defaults"])
         }
-        return f"Job({', '.join(f'{name}={value!r}' for name, value in given.items())})"
+        words = {name: self._written.get(str(value)) or repr(value) for name, value in given.items() if value is not None}
+        return f"Job({', '.join(f'{name}={value}' for name, value in words.items())})"
 
     def plan(self):
         """What would be rendered, decided before the first ray: a `Plan`. Needs the scene only where the camera is in it."""

@@ -5,8 +5,8 @@ import json
 
 import numpy as np
 
-from ._columns import columns_of, flattened, frame_of
-from ._table import as_html
+from ._columns import column_of, columns_of, flattened, frame_of
+from ._table import as_html, row_of
 from .rendering import SamplingMap
 
 
@@ -30,9 +30,11 @@ class Plan:
         return len(self._rows)
 
     def __getitem__(self, key):
-        """A column by its name, or the plan of a slice of its frames."""
+        """A column by its name, a row by its number as a dictionary, or the plan of a slice of the frames."""
         if isinstance(key, str):
-            return self.columns[key]
+            return column_of(self.columns, key)
+        if isinstance(key, (int, np.integer)):
+            return row_of(self.columns, key, len(self))
         part = object.__new__(Plan)
         part._core, part._rows = self._core, list(np.array(self._rows, dtype=int)[key])
         part.columns = {name: values[key] for name, values in self.columns.items()}
@@ -83,6 +85,8 @@ class Plan:
 
     def sampling_map(self, index):
         """The sampling map of the frame in this row."""
+        if not -len(self) <= index < len(self):
+            raise IndexError(f"there is no row {index}: there are {len(self)}")
         return SamplingMap(self._core.sampling_map(self._rows[index]))
 
     @property

@@ -77,6 +77,14 @@ class CompareTest(TestCase):
         table = gazetrace.compare([noise(1), noise(2)], [noise(3), noise(4)], metrics=["mse"]).to_pandas()
         self.assertEqual(list(table.columns), ["frame", "gaze_class", "mse"])
 
+    def test_what_a_notebook_shows(self):
+        result = gazetrace.compare([noise(1), noise(2)], [noise(3), noise(4)], metrics=["mse", "flip"])
+        self.assertRegex(repr(result), r"^<ComparisonResult of 2 frames: mse=0\.\d{1,5}, flip=0\.\d{1,5}>$")
+        self.assertIn("<th>frame</th><th>gaze_class</th><th>mse</th>", result._repr_html_())
+        with self.assertRaises(KeyError) as raised:
+            result["flp"]
+        self.assertIn("did you mean 'flip'?", str(raised.exception))
+
     @needs_program
     def test_files_score_as_with_the_program(self):
         job = gazetrace.Job(scene=COURTYARD, gaze_at=(0.4, 0.5), screen="paper", size=(96, 54), frames="1-2", fps=10)

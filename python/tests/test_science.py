@@ -109,17 +109,41 @@ class GazeOfAJobTest(TestCase):
         self.assertSays("columns t_s", "usage", gazetrace.Job, gaze={"u": u, "v": v})
         job = gazetrace.Job(gaze=np.c_[t, u, v], frames=1, **SMALL).replace(frames=range(1, 3))
         self.assertEqual(len(job.plan()), 2)
+        self.assertIn("gaze=<gaze of 100 samples>, ", repr(job))
+        self.assertIn("gaze=<GazeLog saccades_blinks.csv: ", repr(gazetrace.Job(gaze=gazetrace.read_gaze(GAZE_LOG))))
+        self.assertSays("row 50 is at 0 s after 0.245 s; sort the rows", "usage", gazetrace.Job, gaze=np.c_[t % 0.25, u, v])
+        self.assertSays("far beside it, such as 640, 360; divide pixels", "usage", gazetrace.Job, gaze=np.c_[t, 0 * t + 640, 0 * t + 360])
 
     def test_durations(self):
         job = gazetrace.Job(gaze_latency=0.05, gaze_start=datetime.timedelta(milliseconds=250))
         other = gazetrace.Job(gaze_latency="50ms", gaze_start="250ms")
         self.assertEqual((job["gaze_latency"], job["gaze_start"]), (other["gaze_latency"], other["gaze_start"]))
+        self.assertEqual(gazetrace.Job(gaze_start=np.timedelta64(250, "ms"))["gaze_start"], job["gaze_start"])
 
     def test_names_are_checked_when_they_are_given(self):
         for options, words in (({"filter": "gidued"}, "did you mean 'guided'"), ({"gaze_process": "medn"}, "did you mean 'median'"),
                                ({"aov": "albeod"}, "did you mean 'albedo'"), ({"screen": "papre"}, "did you mean 'paper'")):
             self.assertSays(words, "usage", gazetrace.Job, **options)
             self.assertSays(words, "usage", gazetrace.Job().replace, **options)
+
+    def test_names_of_columns_are_checked(self):
+        log = gazetrace.read_gaze(GAZE_LOG)
+        events, plan = log.detect_events(), gazetrace.Job(gaze=log, frames=range(1, 4), **SMALL).plan()
+        for error, call, words in ((KeyError, lambda: events["duration"], "did you mean 'duration_ms'?"), (AttributeError, lambda: events.fixatons, "did you mean 'fixations'?"),
+                                   (AttributeError, lambda: events.fixations.duration, "did you mean 'duration_ms'?"), (KeyError, lambda: log["pupl"], "did you mean 'pupil'?"),
+                                   (KeyError, lambda: plan["gaze_true"], "did you mean 'gaze_true_"), (IndexError, lambda: plan[3], "no row 3: there are 3"),
+                                   (IndexError, lambda: plan.sampling_map(3), "no row 3: there are 3"), (IndexError, lambda: events[len(events)], "there is no row")):
+            with self.assertRaises(error) as raised:
+                call()
+            self.assertIn(words, str(raised.exception))
+        self.assertEqual((plan[1]["frame"], plan[-1]["frame"], plan[1]["gaze_render_u"]), (2, 3, plan.u[1]))
+
+    def test_commands_in_messages_are_those_of_the_program(self):
+        path = self.folder / "pixels.csv"
+        path.write_text("time,x,y\n" + "".join(f"{4 * i},{400 + i},{300 + i % 7}\n" for i in range(200)))
+        with self.assertRaises(gazetrace.Error) as raised:
+            gazetrace.read_gaze(path)
+        self.assertRegex(str(raised.exception), r"gazetrace gaze import \S+pixels.csv -o gaze.csv --unit px --screen-px W,H")
 
     def test_one_warning_says_all(self):
         job = gazetrace.Job(gaze=GAZE_LOG, gaze_latency="50ms", frames=range(1, 3), **SMALL)
@@ -148,6 +172,10 @@ class PiecesTest(TestCase):
         log = gazetrace.read_gaze(GAZE_LOG)
         self.assertRegex(repr(log), rf"<GazeLog saccades_blinks\.csv: {len(log)} samples of gaze on a screen in [0-9.]+ s, [0-9.]+ Hz, [0-9.]+ % usable>")
         self.assertIn("<th>t_ns</th>", log._repr_html_())
+        # The rate is that of the samples, whatever pauses there are.
+        path = self.folder / "blocks.csv"
+        path.write_text("# gazetrace-gaze 1\nt[ns],u[1],v[1],valid,eye\n" + "".join(f"{(i + 5000 * (i > 99)) * 2_000_000},0.5,0.5,ok,cyclopean\n" for i in range(200)))
+        self.assertIn("200 samples of gaze on a screen in 10.4 s, 500 Hz", repr(gazetrace.read_gaze(path)))
         plan = gazetrace.Job(gaze=GAZE_LOG, frames=range(1, 4), **SMALL).plan()
         self.assertRegex(repr(plan), r"<Plan of 3 frames: 1 to 3, [0-9.]+ % with gaze>")
         self.assertIn("<th>frame</th>", plan._repr_html_())
