@@ -26,7 +26,8 @@ plt.show()
 # %% [markdown]
 # Left: the first frame under all fixations of the log, as fractions of the screen. The area of a disc is the duration of its
 # fixation. Right: the time that each frame took to trace. FLIP is the perceived difference of two pictures, from 0 to 1,
-# when they are flipped in place; here it is the mean over the frames, against 32 samples in every pixel.
+# when they are flipped in place; here it is the mean over the frames that fall in
+# fixations, against 32 samples in every pixel.
 #
 # Each line has its section in [the manual](../python.md). For the error by distance from the gaze go on with
 # [what foveation saves](one_scene.py).

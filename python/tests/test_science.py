@@ -146,11 +146,14 @@ class GazeOfAJobTest(TestCase):
         self.assertRegex(str(raised.exception), r"gazetrace gaze import \S+pixels.csv -o gaze.csv --unit px --screen-px W,H")
 
     def test_one_warning_says_all(self):
-        job = gazetrace.Job(gaze=GAZE_LOG, gaze_latency="50ms", frames=range(1, 3), **SMALL)
+        lost = np.c_[np.arange(10) / 10, np.full(10, np.nan), np.full(10, 0.5)]
+        job = gazetrace.Job(gaze=lost, frames=range(1, 3), **SMALL)
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             job.plan()
-        self.assertLessEqual(len(caught), 1)
+        self.assertEqual(len(caught), 1)
+        self.assertGreater(len(str(caught[0].message).splitlines()), 1)
+        self.assertEqual(caught[0].filename, __file__)  # where it was called
 
 
 class PiecesTest(TestCase):

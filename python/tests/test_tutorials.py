@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every tutorial runs, small, and becomes a page with pictures; what they promise of their length holds."""
 
+import contextlib
 import importlib.util
+import io
 import os
 import re
 import sys
@@ -52,6 +54,28 @@ class TutorialTest(TestCase):
                 self.assertNotIn("# small:", page)
                 for link in re.findall(r"\]\((\.\.?/?[^)]*|\w+\.py)\)", page):
                     self.assertTrue((ROOT / "docs/tutorials" / link).exists(), link)
+
+    def test_the_manual_says_what_runs(self):
+        """The code of docs/python.md, in order and small."""
+        for name in ("uniform", "gaze"):
+            gazetrace.Job(scene=COURTYARD, camera="walk", gaze="gazelogs/tx300_left.csv", size=(32, 18), fps=10, frames=range(1, 4), spp=1,
+                          output=f"out/{name}/frame.####.exr").run()
+        text = (ROOT / "docs/python.md").read_text(encoding="utf-8")
+        blocks = re.findall(r"(<!--[^\n]*-->\n)?```python\n(.*?)```", text, re.S)
+        names = {}
+        for skipped, code in blocks:
+            if not skipped:
+                with contextlib.redirect_stdout(io.StringIO()):
+                    exec(code.replace("(640, 360)", "(32, 18)").replace("range(1, 25)", "range(1, 4)").replace("spp=64", "spp=1"), names)
+        self.assertGreaterEqual(len([1 for skipped, _ in blocks if not skipped]), 3)
+        self.assertIsInstance(names["fixations"], gazetrace.Events)
+        # What the tables name is there.
+        plan, frame = names["plan"], names["frame"]
+        named = re.findall(r"`((?:plan|frame)[.\[][^`]*)`", text)
+        self.assertGreater(len(named), 15)
+        for code in named:
+            if "matte" not in code and not code.endswith((".csv", ".json")):  # of layers, and files
+                eval(code, {"plan": plan, "frame": frame, "row": 0})
 
     def test_fifteen_lines(self):
         self.assertLessEqual(len(statements(*self.code_of("fifteen_lines.py"))), 15)
