@@ -6,11 +6,15 @@ import os
 from pathlib import Path
 
 import bpy
+import numpy as np
 
 from .toml import Value
 
-# A pixel is a third of the sun's width. Only at the sun's edge, and at others, more than the fewest samples are taken.
+# A pixel is a third of the sun's width. Only at edges more than the fewest samples are taken.
 BAKED_SIZE_PX, FEWEST_SAMPLES, MOST_SAMPLES = (2048, 1024), 4, 64
+# The sun is a few pixels with most of the light: those around a peak that is so much brighter than the mean are baked
+# again, with as many samples each as tell the sun's flux to a thousandth.
+PEAK, AROUND_PX, PEAK_SAMPLES = 100, 8, 4096
 
 # At a direction (x, y, z) Blender's picture shows the column 1/2 - atan2(y, x) / turn, gazetrace's 1/2 + atan2(x, y) / turn.
 BLENDER_TURN_DEG = 90.0
@@ -81,10 +85,47 @@ def bake(scene: bpy.types.Scene, path: Path) -> None:
         cycles.samples, cycles.adaptive_min_samples, cycles.use_adaptive_sampling = MOST_SAMPLES, FEWEST_SAMPLES, True
         cycles.pixel_filter_type, cycles.use_denoising = "BOX", False
         bpy.ops.render.render(write_still=True, scene=baking.name)
+        bake_peak(baking, path)
     finally:
         bpy.data.scenes.remove(baking)
         bpy.data.objects.remove(eye)
         bpy.data.cameras.remove(camera)
+
+
+def bake_peak(baking: bpy.types.Scene, path: Path) -> None:
+    """Renders the surroundings of the brightest pixel of a baked picture again, with many samples, and puts them in."""
+    width, height = BAKED_SIZE_PX
+    picture = bpy.data.images.load(str(path), check_existing=False)
+    peak_path = path.with_suffix(".peak.exr")
+    try:
+        values = np.empty(width * height * 4, np.float32)
+        picture.pixels.foreach_get(values)
+        values = values.reshape(height, width, 4)
+        light = values[..., :3].mean(axis=2)
+        if light.max() < PEAK * light.mean():
+            return
+        y, x = np.unravel_index(light.argmax(), light.shape)
+        left, low = max(0, int(x) - AROUND_PX), max(0, int(y) - AROUND_PX)
+        right, high = min(width, int(x) + AROUND_PX), min(height, int(y) + AROUND_PX)
+        render = baking.render
+        render.use_border = True
+        # A quarter of a pixel inwards, so that rounding keeps the edges.
+        render.border_min_x, render.border_max_x = (left + 0.25) / width, (right - 0.25) / width
+        render.border_min_y, render.border_max_y = (low + 0.25) / height, (high - 0.25) / height
+        render.filepath = str(peak_path)
+        baking.cycles.use_adaptive_sampling, baking.cycles.samples = False, PEAK_SAMPLES
+        bpy.ops.render.render(write_still=True, scene=baking.name)
+        peak = bpy.data.images.load(str(peak_path), check_existing=False)
+        again = np.empty(width * height * 4, np.float32)
+        peak.pixels.foreach_get(again)
+        bpy.data.images.remove(peak)
+        values[low:high, left:right] = again.reshape(height, width, 4)[low:high, left:right]
+        picture.pixels.foreach_set(values.ravel())
+        picture.filepath_raw, picture.file_format = str(path), "OPEN_EXR"
+        picture.save()
+    finally:
+        bpy.data.images.remove(picture)
+        peak_path.unlink(missing_ok=True)
 
 
 def constant(colour: bpy.types.bpy_prop_array, strength: float) -> dict[str, Value]:
