@@ -106,6 +106,14 @@ std::string unknown_option_text(const std::string& flag, const CLI::App& command
       return "'" + flag + "' is now --" + now.front().first + "; " + former->reason;
     }
   }
+  if (flag == "-o" || flag == "--output") {
+    const auto folders = command.get_options([](const CLI::Option* option) {
+      return option->get_positional() && (option->get_type_name() == "FOLDER" || option->get_type_name() == "DIR");
+    });
+    if (!folders.empty()) {
+      return fmt::format("'{}' is no option here: the folder stands by itself, as in '{} FOLDER'", flag, words);
+    }
+  }
   if (flag.starts_with("--") && job_schema().find(flag.substr(2)) != nullptr) {
     return "'" + flag + "' is an option of 'gazetrace render', and none of '" + words + "'";
   }
@@ -127,6 +135,10 @@ std::string unknown_word_text(const CLI::App& app, const CLI::App* command, cons
       return command == nullptr ? unknown_among_many("command", name, commands)
                                 : unknown_name_message("command", name, commands);
     }
+    return fmt::format(
+        "'{}' is one word too many: a value with spaces stands in quotes, and the numbers of a value have "
+        "commas or an x between",
+        word);
   }
   return {};
 }

@@ -41,11 +41,11 @@ bool is_default(const FrameRect& rect) {
 }  // namespace
 
 void check_display(const DisplayGeometry& display) {
-  check_positive(display.width_px, "width in pixels", "give its resolution in pixels");
-  check_positive(display.height_px, "height in pixels", "give its resolution in pixels");
-  check_positive(display.width_cm, "width in cm", "give the size of its active area in cm");
-  check_positive(display.height_cm, "height in cm", "give the size of its active area in cm");
-  check_positive(display.distance_cm, "distance from the eye in cm", "give the eye's distance in cm");
+  check_positive(display.width_px, "width in pixels", "give `screen-px`, or `screen` with a name");
+  check_positive(display.height_px, "height in pixels", "give `screen-px`, or `screen` with a name");
+  check_positive(display.width_cm, "width in cm", "give `screen-cm`, the size of its active area");
+  check_positive(display.height_cm, "height in cm", "give `screen-cm`, the size of its active area");
+  check_positive(display.distance_cm, "distance from the eye in cm", "give `screen-distance-cm`");
   if (!std::isfinite(display.eye_x_cm) || !std::isfinite(display.eye_y_cm)) {
     throw Error(ErrorKind::usage, "", "the eye's offset from the display's centre is not a finite number",
                 "give it in cm, right and up");

@@ -17,7 +17,9 @@ struct ForeignKind {
 };
 using std::string_view_literals::operator""sv;
 constexpr std::string_view kExportAsCsv = "export it as CSV with a column of time and columns of gaze";
+constexpr ForeignKind kScene{"glTF", "a glTF scene", "the scene stands first, and the log after `gaze`"};
 constexpr std::array kForeignKinds{
+    kScene,
     ForeignKind{"SR_RESEARCH", "an EyeLink data file (.EDF)",
                 "run `edf2asc FILE.EDF`, and give the .asc file that it writes"},
     ForeignKind{
@@ -123,7 +125,12 @@ void refuse_foreign_file(const GazeFile& file) {
   const std::string_view head = trim(text.substr(0, text.find('\n')));
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first != std::string_view::npos && (text[first] == '{' || text[first] == '[')) {
-    const std::string names = names_in_json(text.substr(first, 4000));
+    const std::string_view beginning = text.substr(first, 4000);
+    if (beginning.find("\"asset\"") != std::string_view::npos &&
+        beginning.find("\"version\"") != std::string_view::npos) {
+      refuse_kind(file, kScene.name, kScene.way_out);
+    }
+    const std::string names = names_in_json(beginning);
     const bool are_lines = head.starts_with('{') && head.ends_with('}');
     refuse_kind(file, are_lines ? "JSON with an object in each line" : "JSON",
                 fmt::format("write it as CSV with a column of time and columns of gaze{}",

@@ -58,7 +58,8 @@ CameraPath still_camera(const JobSettings& job) {
     throw Error(ErrorKind::usage, "`eye`", "a still camera needs `target` as well");
   }
   if (*job.eye == *job.target) {
-    throw Error(ErrorKind::usage, "`target`", "the camera stands on its target");
+    throw Error(ErrorKind::usage, "`target`", "the camera stands on its target",
+                "give it a point that the camera looks at");
   }
   if (!(length(job.up) > 0)) {
     throw Error(ErrorKind::usage, "`up`", "an up vector of no length points nowhere", "leave it out for 0,1,0");

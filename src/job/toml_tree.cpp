@@ -5,7 +5,9 @@
 
 #include <toml++/toml.h>
 #include <algorithm>
+#include <cctype>
 
+#include "core/text.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
@@ -88,6 +90,32 @@ int line_of_open_quote(std::string_view text) {
   return 0;
 }
 
+// What to do about a line that is no TOML.
+std::string toml_remedy(std::string_view text, std::size_t number, std::string_view problem) {
+  for (std::size_t line = 1; line < number && !text.empty(); ++line) {
+    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  }
+  const std::string_view line = trim(text.substr(0, text.find('\n')));
+  const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_'; };
+  const auto word_end = static_cast<std::size_t>(std::find_if_not(line.begin(), line.end(), is_word) - line.begin());
+  const std::string_view behind = trim(line.substr(word_end));
+  if (behind.starts_with(':') || line.starts_with('{')) {
+    return "write each setting on a line of its own, as key = value";
+  }
+  if (problem.find("redefine") != std::string_view::npos) {
+    return "give each key once";
+  }
+  if (line.find('\\') != std::string_view::npos) {
+    return "put a path with \\ into single quotes, or write it with /";
+  }
+  if (behind.starts_with('=')) {
+    const std::string_view value = trim(behind.substr(1));
+    return value.starts_with("True") || value.starts_with("False") ? "write true and false in small letters"
+                                                                   : "put text into quotes: key = \"text\"";
+  }
+  return "this is not TOML";
+}
+
 }  // namespace
 
 const TomlNode* TomlNode::find(std::string_view key) const {
@@ -106,7 +134,7 @@ TomlNode parse_toml(std::string_view text, const std::string& path) {
                   "close it on the same line");
     }
     throw Error(ErrorKind::input, fmt::format("{}:{}", path, error.source().begin.line),
-                std::string(error.description()), "this is not TOML");
+                std::string(error.description()), toml_remedy(text, error.source().begin.line, error.description()));
   }
 }
 

@@ -159,8 +159,10 @@ void warn_of_held_gaze(const std::vector<FrameRequest>& frames, const GazeLog& l
   std::size_t held = 0;
   std::size_t after_end = 0;
   std::int32_t first_after = 0;
+  std::size_t before = 0;
   for (const FrameRequest& request : frames) {
     const GazeAtTime& gaze = request.gaze_render;
+    before += gaze.no_gaze && !log.samples.empty() && gaze.t_log_ns < log.samples.front().t_ns ? 1 : 0;
     if (!gaze.no_gaze || gaze.state != GazeState::held) {
       continue;
     }
@@ -169,6 +171,11 @@ void warn_of_held_gaze(const std::vector<FrameRequest>& frames, const GazeLog& l
       first_after = after_end == 0 ? request.frame : first_after;
       ++after_end;
     }
+  }
+  if (2 * before > frames.size()) {  // a latency leaves the first few frames without gaze
+    warnings.push_back(fmt::format(
+        "{} of {} frames lie before the first row of the gaze log: check `gaze-latency`, or begin `frames` later",
+        before, frames.size()));
   }
   if (after_end > 0) {
     warnings.push_back(

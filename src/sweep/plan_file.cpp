@@ -410,7 +410,12 @@ SweepFile read_sweep_file(const std::string& path, const JobSchema& schema) {
   const TomlNode root = parse_toml(text_of(path), path);
   for (const auto& [key, node] : root.members) {
     if (!is_among(kTables, key)) {
-      refuse(toml_place(path, node), unknown_name_message("key", key, {kTables.begin(), kTables.end()}));
+      const std::string problem = unknown_name_message("key", key, {kTables.begin(), kTables.end()});
+      if (root.find("scene") != nullptr && root.find("scene")->kind == TomlNode::Kind::scalar) {
+        refuse(toml_place(path, node), "this is the job of a render, and no plan of a sweep",
+               "render it with 'gazetrace render --config " + path + "', or write its options under [common]");
+      }
+      refuse(toml_place(path, node), problem);
     }
   }
   const RenderOptions options(schema);

@@ -176,7 +176,7 @@ class Bombs(Farm):
         told = json.loads(self.run_ok("scene", "glide.gltf", "--estimate", "--json").stdout)
         self.assertEqual((told["triangles"], told["nodes"]), (12, 4))
         self.assertIn("will take    about", self.run_ok("scene", "glide.gltf").stdout)
-        refusal = ["glide.gltf", "will take about", "the limit is 0 MiB", "--max-memory"]
+        refusal = ["glide.gltf", "will take about", "the limit is 1024 bytes", "--max-memory"]
         self.assert_refused(["scene", "glide.gltf", "--max-memory", "1K"], refusal)
         self.assert_refused(["render", *JOB, "-o", "o/f.exr", "--max-memory", "1K"], refusal)
         self.run_ok("scene", "glide.gltf", "--max-memory", "160M")

@@ -64,6 +64,31 @@ MISTAKES = [
     ("a reference of no level", {"plan.toml": 'reference = "auto"\n' + PLAN + '[measure]\nmetrics = ["mse"]\n'}, ["sweep", "plan.toml", "--dry-run"],
      ["plan.toml: ", "follows a level in JOD", "fovvideovdp=9"]),
     ("fixations without gaze", {}, ["plan", "box.gltf", "--size", "32x18", "--frames", "fixations"], ["--frames: ", "no gaze log", "give --gaze"]),
+    # A second twenty.
+    ("a size as two words", {}, ["render", "box.gltf", "--size", "32", "18", "-o", "f.png"], ["'18' is one word too many", "an x between"]),
+    ("a path with a space", {}, ["render", "my", "scenes/box.gltf", *JOB], ["'scenes/box.gltf' is one word too many", "in quotes"]),
+    ("an address", {}, ["scene", "https://example.com/room.glb"], ["https://example.com/room.glb: ", "an address", "download it"]),
+    ("a ~ in quotes", {}, ["render", "~/room.glb", *JOB], ["~/room.glb: ", "no such file", "leave out the quotes"]),
+    ("the log as scene", {"log.csv": "t,x,y\n0,1,2\n"}, ["render", "log.csv", *JOB], ["log.csv: ", "this is a table", "--gaze"]),
+    ("the scene as log", {}, ["plan", "box.gltf", "--gaze", "box.gltf", "--size", "32x18"], ["box.gltf: ", "a glTF scene", "the scene stands first"]),
+    ("a packed scene as log", {"room.glb": b"glTF\2\0\0\0"}, ["gaze", "inspect", "room.glb"], ["room.glb: ", "a glTF scene", "the scene stands first"]),
+    ("settings as scene", {"job.toml": 'scene = "box.gltf"\n'}, ["render", "job.toml", "-o", "f.png"], ["job.toml: ", "a settings file", "--config"]),
+    ("an environment as scene", {"sky.hdr": "#?RADIANCE\n"}, ["render", "sky.hdr", *JOB], ["sky.hdr: ", "a picture", "--env"]),
+    ("Python's True", {"job.toml": 'size = "32x18"\nalpha = True\n'}, ["plan", "--config", "job.toml"], ["job.toml:2: ", "write true and false in small letters"]),
+    ("a path of Windows", {"job.toml": 'scene = "C:\\Users\\me\\box.gltf"\n'}, ["plan", "--config", "job.toml"], ["job.toml:1: ", "single quotes"]),
+    ("YAML", {"job.toml": "scene: box.gltf\n"}, ["plan", "--config", "job.toml"], ["job.toml:1: ", "as key = value"]),
+    ("JSON", {"job.toml": '{"scene": "box.gltf"}\n'}, ["plan", "--config", "job.toml"], ["job.toml:1: ", "as key = value"]),
+    ("text without quotes", {"job.toml": "# a job\n\nscene = box.gltf\n"}, ["plan", "--config", "job.toml"], ["job.toml:3: ", "put text into quotes"]),
+    ("a key twice", {"job.toml": 'size = "32x18"\nsize = "64x36"\n'}, ["plan", "--config", "job.toml"], ["job.toml:2: ", "give each key once"]),
+    ("a screen without its distance", {}, ["render", "box.gltf", *JOB, "--gaze-at", "0.5,0.5", "--screen-cm", "52,29", "--screen-px", "1920,1080"],
+     ["distance from the eye", "--screen-distance-cm"]),
+    ("a job as the plan of a sweep", {"job.toml": 'size = "32x18"\nscene = "box.gltf"\n'}, ["sweep", "job.toml", "-o", "out"],
+     ["job.toml:1: ", "the job of a render", "gazetrace render --config job.toml"]),
+    ("settings as the folder of a demo", {"job.toml": ""}, ["demo", "job.toml"], ["job.toml: ", "a file", "--config"]),
+    ("a folder by an option", {}, ["demo", "-o", "out"], ["'-o' is no option here", "gazetrace demo FOLDER"]),
+    ("memory without a unit", {}, ["render", "box.gltf", *JOB, "--max-memory", "4"], ["box.gltf: ", "the limit is 4 bytes", "--max-memory"]),
+    ("a lens by another name", {}, ["render", "box.gltf", *JOB, "--fstop", "2.8"], ["--fstop: ", "--aperture", "--focus-distance"]),
+    ("a processor of graphics", {}, ["render", "box.gltf", *JOB, "--gpu"], ["--gpu: ", "runs on the processor"]),
 ]  # fmt: skip
 
 
@@ -107,6 +132,13 @@ class Mistakes(harness.CliTest):
                 done = subprocess.run([harness.PROGRAM, *words], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
             self.assertEqual(done.returncode, 3, words)
             self.assertIn("No space left", done.stderr)
+
+    def test_frames_before_the_log_are_told_of(self):
+        self.write("log.csv", harness.moving_gaze())
+        job = ["plan", "box.gltf", "--gaze", "log.csv", "--size", "32x18", "--frames", "1-5"]
+        told = self.run_ok(*job, "--gaze-latency", "5s").stderr
+        self.assertIn("5 of 5 frames lie before the first row of the gaze log: check --gaze-latency", told)
+        self.assertNotIn("before the first row", self.run_ok(*job, "--gaze-latency", "30ms").stderr)
 
     def test_a_scene_is_read_by_its_content(self):
         """JSON under any name is glTF, and no foreign name hides it."""

@@ -159,6 +159,10 @@ int run_demo(const DemoArguments& arguments) {
   const fs::path folder(arguments.folder);
   const auto in = [&](const char* name) { return (folder / name).string(); };
   std::error_code ignored;
+  if (fs::is_regular_file(folder, ignored)) {
+    throw Error(ErrorKind::input, arguments.folder, "this is a file, and results go into a folder",
+                "settings of your own are given by --config");
+  }
   if (!arguments.overwrite && fs::exists(folder, ignored) && !fs::is_empty(folder, ignored)) {
     throw Error(ErrorKind::input, arguments.folder, "this folder is there already",
                 "give --overwrite or another folder");

@@ -161,7 +161,8 @@ class MotionSizes {
 };
 
 std::string mib(std::uint64_t bytes) {
-  return std::to_string(bytes >> 20U) + " MiB";
+  constexpr std::uint64_t kMib = std::uint64_t{1} << 20U;
+  return bytes < kMib ? std::to_string(bytes) + " bytes" : std::to_string(bytes >> 20U) + " MiB";
 }
 
 }  // namespace

@@ -140,7 +140,12 @@ GltfFile read_gltf_file(const std::string& path) {
   file.path = path;
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
-    throw Error(ErrorKind::input, path, "there is no such file", "give the path of a .gltf or .glb");
+    if (path.find("://") != std::string::npos) {
+      throw Error(ErrorKind::input, path, "this is an address, and files are read", "download it, and give its path");
+    }
+    throw Error(ErrorKind::input, path, "there is no such file",
+                path.starts_with("~/") ? "write the folder out, or leave out the quotes, which keep ~ as it is"
+                                       : "give the path of a .gltf or .glb");
   }
   if (std::filesystem::is_directory(path, error)) {
     refuse_folder_as_scene(path);

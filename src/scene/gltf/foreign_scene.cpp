@@ -51,6 +51,13 @@ const std::vector<ForeignKind>& foreign_kinds() {
       {"a Houdini scene", "", "", {".hip", ".hipnc"}, "export .glb from where it was made"},
       {"a web page", "<!DOCTYPE html", "<html", {".html", ".htm"}, "download the file itself"},
       {"a pointer of Git LFS", "version https://git-lfs", "", {}, "fetch the file itself: git lfs pull"},
+      {"a settings file", "", "", {".toml"}, "give it by --config"},
+      {"a table",
+       "",
+       "",
+       {".csv", ".tsv", ".txt", ".asc"},
+       "a gaze log goes after `gaze`, a camera path after `camera-path`"},
+      {"a picture", "", "", {".hdr", ".exr", ".png", ".jpg"}, "an environment goes after `env`"},
       {"a zip archive", "PK\x03\x04", "", {".zip"}, "unpack it and give the .gltf or .glb that is in it"},
   };
   return kKinds;

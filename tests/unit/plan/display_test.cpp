@@ -112,17 +112,17 @@ TEST(Display, ErrorsNameTheField) {
     return message_of([&] { check_display(display); });
   };
   EXPECT_EQ(with([](auto& d) { d.width_px = 0; }),
-            "the display's width in pixels is not stated; give its resolution in pixels");
+            "the display's width in pixels is not stated; give `screen-px`, or `screen` with a name");
   EXPECT_EQ(with([](auto& d) { d.height_px = -1; }),
-            "the display's height in pixels is -1, not a positive number; give its resolution in pixels");
+            "the display's height in pixels is -1, not a positive number; give `screen-px`, or `screen` with a name");
   EXPECT_EQ(with([](auto& d) { d.width_cm = std::nan(""); }),
             "the display's width in cm is nan, not a positive number; give the size of its active area in cm");
   EXPECT_EQ(with([](auto& d) { d.height_cm = 0; }),
             "the display's height in cm is not stated; give the size of its active area in cm");
   EXPECT_EQ(with([](auto& d) { d.distance_cm = std::numeric_limits<double>::infinity(); }),
-            "the display's distance from the eye in cm is inf, not a positive number; give the eye's distance in cm");
+            "the display's distance from the eye in cm is inf, not a positive number; give `screen-distance-cm`");
   EXPECT_EQ(with([](auto& d) { d.distance_cm = 0; }),
-            "the display's distance from the eye in cm is not stated; give the eye's distance in cm");
+            "the display's distance from the eye in cm is not stated; give `screen-distance-cm`");
   EXPECT_EQ(message_of([] { display_by_name("papper"); }).substr(0, 55),
             "unknown display 'papper'; did you mean 'paper'? Known: ");
   EXPECT_THAT(message_of([] { view_of_perspective(kPi, 4, 4); }), HasSubstr("is not between 0 and 180"));

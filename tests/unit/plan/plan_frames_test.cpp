@@ -240,7 +240,7 @@ TEST(PlanFrames, ScreenGazeNeedsTheScreensGeometry) {
   settings.display->distance_cm = 0;
   EXPECT_EQ(message_of(still(), &log, settings, ErrorKind::input),
             "gaze.csv: gaze on a screen cannot be turned into angles: the display's distance from the eye in cm is "
-            "not stated; give the eye's distance in cm" +
+            "not stated; give `screen-distance-cm`" +
                 remedy);
 }
 
