@@ -154,7 +154,11 @@ RenderedFrame FrameRenderer::finish(const std::vector<const WindowFrame*>& windo
     WindowJoin join(samples_of(frame), places, tracer_->moves(), settings_.threads);
     for (const WindowFrame* other : window) {
       if (other != &frame) {
-        join.add(samples_of(*other), scene.places_of(other->hits, view));
+        std::optional<HitPlaces> back;
+        if (tracer_->moves()) {
+          back.emplace(scene.places_of(frame.hits, {other->request.camera, other->request.t_video_ns}));
+        }
+        join.add(samples_of(*other), scene.places_of(other->hits, view), back ? &*back : nullptr);
       }
     }
     return join.joined();

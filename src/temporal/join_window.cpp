@@ -5,12 +5,14 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
 #include "foveation/site_images.hpp"
+#include "temporal/moving_edges.hpp"
 #include "temporal/same_camera.hpp"
 #include "trace/rays/camera_rays.hpp"
 #include "trace/samples/surface_sums.hpp"
@@ -104,8 +106,22 @@ bool WindowJoin::joins(const WindowSamples& other, const Vec3f& to_own, const Hi
          dot(place.position_m, seen_from_other) >= same_view * std::sqrt(distance) * std::sqrt(far);
 }
 
-void WindowJoin::add(const WindowSamples& other, const HitPlaces& places) {
+void WindowJoin::add(const WindowSamples& other, const HitPlaces& places, const HitPlaces* back) {
   const SamplingMap& map = *other.map;
+  std::optional<MovingEdges> theirs;
+  std::optional<MovingEdges> ours;
+  if (light_changes_ && back != nullptr) {
+    theirs.emplace(places, *own_.camera, map.width_px, map.height_px, threads_);
+    ours.emplace(*back, *other.camera, map.width_px, map.height_px, threads_);
+  }
+  // What a site at an outline saw of a body leaves with the body, though its middle saw what is behind and stays.
+  const auto would_leave_a_ghost = [&](const PixelIndex& middle, int block_px, const Seen& seen) {
+    if (!theirs || !theirs->at(middle.x, middle.y, block_px)) {
+      return false;
+    }
+    const PixelIndex there = middle_of(*own_.map, own_.map->sites[seen.site]);
+    return !ours->at(there.x, there.y, seen.block_px);
+  };
   const std::size_t tiles = map.tiles.size();
   Added added{other,
               std::vector<std::uint32_t>(map.sites.size()),
@@ -127,7 +143,8 @@ void WindowJoin::add(const WindowSamples& other, const HitPlaces& places) {
         continue;
       }
       const Seen& seen = seen_[pixel_index(map, static_cast<int>(place.px.x), static_cast<int>(place.px.y))];
-      if (!joins(other, to_own, place, seen, site)) {
+      if (!joins(other, to_own, place, seen, site) ||
+          would_leave_a_ghost(middle, map.regions[map.sites[site].region].block_px, seen)) {
         continue;
       }
       target = seen.site;

@@ -39,6 +39,9 @@ struct JoinedSamples {
 // kSamePlace of its distance; where it is not seen more coarsely than at kMostCoarse times the frame's own footprint;
 // and, if the surface is glossy, where it is seen from within kSameGlossyView, or if it mirrors, kSameMirroredView.
 //
+// A site at the outline of something that moves joins only where such an outline is: what it saw of the body would stay
+// behind as a ghost where the background that its middle saw is.
+//
 // Where light may differ, of each block of pixels only the frames around the frame itself join whose light does not
 // differ from its own by more than their noise (light_changes.hpp): of glossy surfaces that are seen from elsewhere,
 // and of all surfaces with `light_changes`.
@@ -53,8 +56,9 @@ class WindowJoin {
   WindowJoin(const WindowJoin&) = delete;
   WindowJoin& operator=(const WindowJoin&) = delete;
 
-  // Another frame of the same size. `places`: what its pixels see, in the frame's view.
-  void add(const WindowSamples& other, const HitPlaces& places);
+  // Another frame of the same size. `places`: what its pixels see, in the frame's view; `back`: what the frame's pixels
+  // see, in its view, or null where nothing in the scene moves.
+  void add(const WindowSamples& other, const HitPlaces& places, const HitPlaces* back);
 
   // Without stats.
   [[nodiscard]] JoinedSamples joined() const;

@@ -396,7 +396,7 @@ class Bones(AddOnTest):
         scenes.key(moved, "value", 30, 1.0)
         self.scene.render.resolution_x, self.scene.render.resolution_y = 160, 90
         self.scene.render.fps_base = 1.25
-        self.further('sampling = "uniform"\nfilter = "none"\nbounces = 0\naccumulate = "off"\n')
+        self.further('sampling = "uniform"\nfilter = "none"\nbounces = 0\n')
         self.settings.samples = 64
         self.save()
         self.assertEqual(bpy.ops.gazetrace.render(), {"FINISHED"})
