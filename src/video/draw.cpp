@@ -148,6 +148,46 @@ void draw_fixation_mark(DisplayImage& image, const Vec2d& gaze_px, double pixels
   draw_disc(image, gaze_px, inner_px, kBlack);
 }
 
+DisplayImage with_insets(const DisplayImage& picture, const DisplayImage& clean, const std::optional<Vec2d>& gaze_px) {
+  constexpr int kTimes = 3;
+  const int half = picture.width_px / 2;
+  const int width = (half + kTimes - 1) / kTimes;
+  const int height = std::max(1, picture.height_px / (kTimes * kTimes));
+  DisplayImage out{picture.width_px, picture.height_px + kTimes * height, 8, picture.bytes};
+  out.bytes.resize(3 * static_cast<std::size_t>(out.width_px) * static_cast<std::size_t>(out.height_px));
+  if (!gaze_px || !std::isfinite(gaze_px->x) || !std::isfinite(gaze_px->y)) {
+    return out;
+  }
+  const int dot_px = std::max(1, picture.width_px / 320);
+  // As far to the side as there is more room.
+  const double aside = (gaze_px->x < half ? 0.45 : -0.45) * picture.width_px;
+  for (const bool far : {false, true}) {
+    const auto begin = [](double middle, int size, int most) {
+      return static_cast<int>(std::clamp(std::floor(middle) - size / 2, 0.0, static_cast<double>(most - size)));
+    };
+    const int left = begin(gaze_px->x + (far ? aside : 0), width, picture.width_px);
+    const int top = begin(gaze_px->y, height, picture.height_px);
+    const int out_left = far ? picture.width_px - half : 0;
+    for (int y = 0; y < kTimes * height; ++y) {
+      for (int x = 0; x < half; ++x) {
+        const auto from = 3 * (static_cast<std::ptrdiff_t>(top + y / kTimes) * clean.width_px + left + x / kTimes);
+        const auto to = 3 * (static_cast<std::ptrdiff_t>(picture.height_px + y) * out.width_px + out_left + x);
+        std::copy_n(clean.bytes.begin() + from, 3, out.bytes.begin() + to);
+      }
+    }
+    for (int y = top; y < top + height; ++y) {
+      for (int x = left; x < left + width; ++x) {
+        if (y == top || y == top + height - 1 || x == left || x == left + width - 1) {
+          blend(out, x, y, kWhite, 0.8);
+        }
+      }
+    }
+    draw_label(out, {out_left + 4.0 * dot_px, picture.height_px + 4.0 * dot_px}, far ? "periphery 3X" : "gaze 3X",
+               dot_px);
+  }
+  return out;
+}
+
 void draw_label(DisplayImage& image, const Vec2d& top_left_px, std::string_view text, int dot_px) {
   const auto fill = [&](int left, int top, int width, int height, const Rgb8Color& color, double coverage) {
     for (int y = std::max(top, 0); y < std::min(top + height, image.height_px); ++y) {

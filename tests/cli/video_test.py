@@ -132,6 +132,23 @@ class Video(harness.CliTest):
         self.assert_refused(["video", "a.####.png", "-o", "c.mkv", "--fps", "24", "--labels", "one,two"], ["--labels", "2 for 1 sequence"])
 
     @NEEDS_FFMPEG
+    def test_insets_show_gaze_and_periphery_three_times_as_large(self):
+        """Every pixel of a picture of its own color, so that each pixel below tells which it shows."""
+        self.sequence("a", 96, 72, 1, lambda n, x, y: (2 * x, 3 * y, 77))
+        self.run_ok("video", "a.####.png", "-o", "i.mkv", "--codec", "ffv1", "--fps", "24", "--gaze-at", "0.25,0.5", "--insets",
+                    "--screen-px", "96,72", "--screen-cm", "96,72", "--screen-distance-cm", "60")
+        frame = self.pixels("i.mkv", 96, 72 + 24)[0]
+        at = lambda x, y: tuple(frame[3 * (96 * y + x):3 * (96 * y + x) + 3])
+        # 16 x 8 pixels about (24, 36), and 45 % of the width beside them; below the labels nothing covers them.
+        for left, shown in ((16, 0), (59, 48)):
+            for x in range(48):
+                for y in range(16, 24):
+                    self.assertEqual(at(shown + x, 72 + y), (2 * (left + x // 3), 3 * (32 + y // 3), 77), (x, y))
+        framed = {x for x in range(96) if at(x, 36)[2] > 100}
+        self.assertEqual(framed, {16, 31, 59, 74})
+        self.assert_refused(["video", "a.####.png", "-o", "c.mkv", "--fps", "24", "--insets"], ["where the gaze was", "--gaze"])
+
+    @NEEDS_FFMPEG
     def test_a_failure_leaves_nothing(self):
         self.sequence()
         self.write("p.0004.png", harness.png(16, 16, lambda x, y: (0, 0, 0)))

@@ -141,7 +141,7 @@ std::vector<Step> steps_of(const DemoArguments& arguments, const std::string& co
     steps.push_back(
         {"Both beside each other: spread evenly on the left, where the eye looked (ring) on the right",
          {"video", in("uniform/frame.####.exr"), in("foveated/frame.####.exr"), "-o", in("side-by-side.mp4"),
-          "--show-gaze", "--labels", "spread evenly,where the eye looked", "--overwrite"}});
+          "--show-gaze", "--insets", "--labels", "spread evenly,where the eye looked", "--overwrite"}});
   }
   if (arguments.without_sweep) {
     return steps;
@@ -179,7 +179,8 @@ int run_demo(const DemoArguments& arguments) {
   const std::string middle = std::to_string(middle_frame(job, frames));
   if (const int code = run_step("One frame, to see how long all will take",
                                 render_words(arguments, config, middle, "first",
-                                             {"--accumulate", "off", "--json", in("first.json"), "--quiet"}));
+                                             {"--accumulate-past", "0s", "--accumulate-future", "0s", "--json",
+                                              in("first.json"), "--quiet"}));
       code != exit_done) {
     return code;
   }
@@ -201,7 +202,7 @@ int run_demo(const DemoArguments& arguments) {
     first_picture_s = first_picture_s > 0 ? first_picture_s : now_s;
   }
   const double all_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  std::vector<std::pair<std::string, std::string>> made{{"frames", in("foveated/frame.0001.png") + " and so on"}};
+  std::vector<std::pair<std::string, std::string>> made{{"frames", in("foveated/frame.####.png")}};
   if (has_ffmpeg) {
     made.emplace_back("video", in("foveated.mp4"));
     made.emplace_back("side by side", in("side-by-side.mp4"));

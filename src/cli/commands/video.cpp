@@ -36,7 +36,7 @@ struct VideoArguments {
   std::string output, color;
   VideoSettings video;
   std::vector<std::string> labels;  // of the sequences, from the left
-  bool show_gaze = false, show_rings = false, fixation_mark = false, overwrite = false;
+  bool show_gaze = false, show_rings = false, fixation_mark = false, insets = false, overwrite = false;
   JsonOutput json;
 };
 
@@ -136,12 +136,12 @@ class FrameMaker {
     const FrameFacts right_facts = job.test == job.reference ? left.facts : read_frame_facts(right_path);
     const ComparedGaze gaze =
         compared_gaze(job, inputs_, left.facts, right_facts, frame, image.width_px, image.height_px);
-    draw(image, gaze.px, 0);
+    mark(image, gaze.px, 0);
     if (job.test != job.reference) {
       const ComparedPicture right = read_compared_picture(right_path);
       check_comparable(job, inputs_, left, right, left_path, right_path);
       DisplayImage other = shown(right, ev);
-      draw(other, gaze.px, 1);
+      mark(other, gaze.px, 1);
       image = side_by_side(image, other);
     }
     return image;
@@ -167,6 +167,13 @@ class FrameMaker {
       const double top_px = image.height_px - 15.0 * dot_px;
       draw_label(image, {4.0 * dot_px, top_px}, "   gaze", dot_px);
       draw_gaze_ring(image, {13.0 * dot_px, top_px + 5.5 * dot_px}, 3.5 * dot_px, dot_px);
+    }
+  }
+  void mark(DisplayImage& image, const std::optional<Vec2d>& gaze_px, std::size_t place) {
+    const DisplayImage clean = arguments_.insets ? image : DisplayImage{};
+    draw(image, gaze_px, place);
+    if (arguments_.insets) {
+      image = with_insets(image, clean, gaze_px);
     }
   }
   void draw(DisplayImage& image, const std::optional<Vec2d>& gaze_px, std::size_t place) {
@@ -228,7 +235,7 @@ int run_video(VideoArguments& arguments) {
   for (std::size_t i = 1; i < inputs.frames.size(); ++i) {
     writer.add(maker.make(inputs.frames[i]));
   }
-  const bool wants_gaze = arguments.show_gaze || arguments.show_rings || arguments.fixation_mark;
+  const bool wants_gaze = arguments.show_gaze || arguments.show_rings || arguments.fixation_mark || arguments.insets;
   if (wants_gaze && !maker.any_gaze()) {
     throw Error(ErrorKind::input, job.reference, "the frames do not say where the gaze was",
                 "give --gaze or --gaze-at, or name the .exr files of the run");
@@ -270,6 +277,8 @@ OptionSchema<VideoArguments> video_schema() {
               "Draws where the regions end, or else 5, 10 and 20 degrees from the gaze");
   schema.flag("--fixation-mark", &VideoArguments::fixation_mark,
               "Draws a mark to look at where the viewer looked (0.6 degrees; Thaler et al. 2013)");
+  schema.flag("--insets", &VideoArguments::insets,
+              "Shows below each picture what is about the gaze and far from it, three times as large");
   schema.value("--labels", &VideoArguments::labels, "TEXT,TEXT",
                "Writes what each sequence shows into its corner, in capitals, and beside --show-gaze what the ring is");
   schema.group("Frames and gaze");
