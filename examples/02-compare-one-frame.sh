@@ -17,7 +17,7 @@ mkdir -p out/compare/uniform out/compare/foveated
 # The columns are found by their names, so that new ones do no harm.
 awk -F, '
   FNR == 1 { file++; delete column; for (i = 1; i <= NF; i++) column[$i] = i; next }
-  { samples[file] += $column["samples"]; ms[file] += $column["learn_ms"] + $column["trace_ms"] + $column["reconstruct_ms"] }
+  { samples[file] += $column["samples"]; ms[file] += $column["guiding_ms"] + $column["trace_ms"] + $column["reconstruct_ms"] }
   END {
     printf "uniform:  %9d samples, %8.1f ms for tracing and reconstruction\n", samples[1], ms[1]
     printf "foveated: %9d samples, %8.1f ms\n", samples[2], ms[2]

@@ -51,7 +51,7 @@ spent = {"uniform": [], "foveated": []}
 def timed(name, frames):
     for frame in frames:
         times = frame.timing
-        spent[name].append({"samples": times["samples"], "ms": times["learn_ms"] + times["trace_ms"] + times["guides_ms"] + times["reconstruct_ms"]})
+        spent[name].append({"samples": times["samples"], "ms": times["guiding_ms"] + times["trace_ms"] + times["guides_ms"] + times["reconstruct_ms"]})
         yield frame
 
 

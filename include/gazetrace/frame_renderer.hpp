@@ -38,9 +38,9 @@ struct FrameSettings {
   double frames_per_second = 0;  // of the clip that the frame belongs to; 0: a still
   // Where it is given: the rates of a frame, in place of the file and of the pilot of its sampling.
   std::function<FrameRates(const FrameRequest& request)> rates_of;
-  // Where it is given, and TraceSettings::learn_light is set: what a frame has learned of its light, in place of
-  // PosedScene::learn_light(). So a part of a frame can know what the whole frame does.
-  std::function<std::shared_ptr<const LearnedLight>(const FrameRequest& request)> light_of;
+  // Where it is given, and TraceSettings::guiding is set: the guiding field of a frame, in place of
+  // PosedScene::train_guiding(). So a part of a frame is guided as the whole frame is.
+  std::function<std::shared_ptr<const GuidingField>(const FrameRequest& request)> light_of;
   // How the viewer's display shows luminance at an exposure in stops; empty: linear_display_curve().
   std::function<DisplayCurve(double exposure_ev)> display_curve;
   LayerSettings layers;
@@ -50,7 +50,7 @@ struct FrameSettings {
 // Wall time of the stages, ms.
 struct StageTimes {
   double plan_ms = 0;         // the sampling map
-  double learn_ms = 0;        // PosedScene::learn_light()
+  double guiding_ms = 0;      // PosedScene::train_guiding()
   double pilot_ms = 0;        // everything that decides the rates of AdaptiveSampling
   double trace_ms = 0;        // samples, and putting the scene into its pose
   double guides_ms = 0;       // first hits for the filter
@@ -70,11 +70,11 @@ struct Prediction {
 struct TracedFrame {
   SamplingMap map;
   SparseFrame sparse;
-  // Of the samples that told where the frame's own belong, and were discarded. The paths of TraceSettings::learn_light
+  // Of the samples that told where the frame's own belong, and were discarded. The paths of TraceSettings::guiding
   // are counted here, too, but are no samples.
   TraceStats pilot;
   Prediction prediction;
-  StageTimes times;  // plan_ms, learn_ms, pilot_ms and trace_ms
+  StageTimes times;  // plan_ms, guiding_ms, pilot_ms and trace_ms
 };
 
 struct RenderedFrame {
@@ -90,11 +90,11 @@ struct RenderedFrame {
   StageTimes times;
 };
 
-// What a frame has learned of its light. A frame at rest with it would learn the same, bit by bit, and takes it over.
-// It belongs to one renderer: others have other settings, and would learn something else.
-struct KnownLight {
-  std::optional<FrameRequest> request;  // of the frame that has learned it; empty: none has
-  std::shared_ptr<const LearnedLight> light;
+// The guiding field trained for a frame. Frames with the same camera and scene reuse it, since training is
+// deterministic. It belongs to one renderer: others have other settings, and would train another field.
+struct TrainedField {
+  std::optional<FrameRequest> request;  // that it was trained for; empty: none
+  std::shared_ptr<const GuidingField> field;
 };
 
 // A frame of a window: its samples, and what its pixels see.
@@ -118,32 +118,32 @@ class FrameRenderer {
   // AccumulateSettings say.
   [[nodiscard]] RenderedFrame render(const FrameRequest& request) const;
   // With `known`, which saves time and changes no picture. It begins empty, and is then that of this frame.
-  [[nodiscard]] RenderedFrame render(const FrameRequest& request, KnownLight& known) const;
+  [[nodiscard]] RenderedFrame render(const FrameRequest& request, TrainedField& known) const;
 
   // Whether nothing moves between two frames: they see the same, and differ by their samples alone.
   [[nodiscard]] bool at_rest(const FrameRequest& a, const FrameRequest& b) const;
 
   // The first two stages alone.
   [[nodiscard]] TracedFrame trace(const FrameRequest& request) const;
-  [[nodiscard]] TracedFrame trace(const FrameRequest& request, KnownLight& known) const;
+  [[nodiscard]] TracedFrame trace(const FrameRequest& request, TrainedField& known) const;
   // All stages after them: render() is finish(request, trace(request)).
   [[nodiscard]] RenderedFrame finish(const FrameRequest& request, TracedFrame traced) const;
 
   // The first stages of a frame that others read (AccumulateMode::window), and all stages after them for one of a
   // window's frames, which are in order: only its own samples and times are counted. Whether this frame has neighbours
   // on both sides is the caller's choice; JoinedFrames chooses them by AccumulateSettings.
-  [[nodiscard]] WindowFrame window_frame(const FrameRequest& request, KnownLight& known) const;
+  [[nodiscard]] WindowFrame window_frame(const FrameRequest& request, TrainedField& known) const;
   [[nodiscard]] RenderedFrame finish(const std::vector<const WindowFrame*>& window, std::size_t own) const;
 
  private:
   // All stages after the samples. What the picture shows is in `shown`; counts and times are those of `own`.
   [[nodiscard]] RenderedFrame finish_with(const FrameRequest& request, const SamplingMap& map, const SparseFrame& shown,
                                           TracedFrame own) const;
-  // Whether `known` is what the frame would learn of its light: its own, or that of a frame at rest with it.
-  [[nodiscard]] bool knows_light(const KnownLight& known, const FrameRequest& request) const;
+  // Whether the frame would train the field of `known`: its own, or that of a frame at rest with it.
+  [[nodiscard]] bool is_trained(const TrainedField& known, const FrameRequest& request) const;
   // Adds the paths that it takes to `stats`.
-  [[nodiscard]] std::shared_ptr<const LearnedLight> learned_light(const PosedScene& scene, const FrameRequest& request,
-                                                                  KnownLight& known, TraceStats& stats) const;
+  [[nodiscard]] std::shared_ptr<const GuidingField> guiding_field(const PosedScene& scene, const FrameRequest& request,
+                                                                  TrainedField& known, TraceStats& stats) const;
   // Each group of light by a filter that is linear; none unless they are asked for.
   [[nodiscard]] std::vector<ImageRgb> filtered_light(const SparseFrame& sparse, const SamplingMap& map,
                                                      StageTimes& times) const;

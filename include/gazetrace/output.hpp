@@ -156,12 +156,12 @@ constexpr std::size_t kTimingRegions = 11;
 
 struct TimingRow {
   std::int32_t frame = 0;
-  double plan_ms = 0, learn_ms = 0, pilot_ms = 0, trace_ms = 0, guides_ms = 0, reconstruct_ms = 0, temporal_ms = 0,
+  double plan_ms = 0, guiding_ms = 0, pilot_ms = 0, trace_ms = 0, guides_ms = 0, reconstruct_ms = 0, temporal_ms = 0,
          exposure_ms = 0, layers_ms = 0, color_ms = 0, write_ms = 0, total_ms = 0;
   double trace_cpu_ms = 0;
   std::uint64_t pixels = 0, samples = 0, pilot_samples = 0;  // those of the pilot are among the samples
   std::uint64_t other_samples = 0;   // among the samples: of frames that were traced only since this one reads them
-  std::uint64_t learning_paths = 0;  // these are not; see TraceStats
+  std::uint64_t training_paths = 0;  // these are not; see TraceStats
   std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0;
   std::uint64_t rejected_rays = 0, non_finite_samples = 0;
   // One entry per region, in the order of timing_regions().

@@ -66,7 +66,7 @@ struct PublishedSpeedUp {
   std::string source;
 };
 
-// One measured setting: a test, or a row that stands beside a test. Times are seconds a frame, of plan, learning,
+// One measured setting: a test, or a row that stands beside a test. Times are seconds a frame, of plan, guiding,
 // pilot, trace, guides, reconstruct, temporal and upscaling.
 struct ResultRow {
   std::string id, scene, gaze, label;

@@ -23,7 +23,7 @@ namespace gazetrace {
 enum class LightSampling : std::uint8_t { mis, light_only, bsdf_only };
 enum class PixelFilter : std::uint8_t { box, blackman_harris };
 
-class LearnedLight;  // opaque; made by PosedScene::learn_light
+class GuidingField;  // opaque; made by PosedScene::train_guiding
 
 struct TraceSettings {
   int max_bounces = 16;  // scattering events on a path; 0 shows emission only
@@ -35,13 +35,13 @@ struct TraceSettings {
   // Upper bound (radiance, on the largest channel) of each contribution that reaches the camera after more than one
   // scattering event. It removes fireflies, and with them the light that they stand for. 0: off, unbiased.
   double clamp_indirect = 0;
-  // The frame first learns from some paths of its own where its light arrives from, and draws bounces towards it
-  // (PosedScene::learn_light). Means do not change. Frames take less samples for the same noise where most of the sky
+  // Path guiding: training paths find where the light of the frame arrives from, and bounces are drawn towards it
+  // (PosedScene::train_guiding). Means do not change. Frames take less samples for the same noise where most of the sky
   // is hidden, and a little more time where it is not.
-  // FrameRenderer does it; trace() itself only follows `learned`.
-  bool learn_light = true;
-  // What the frame has learned: trace() draws bounces by it. Empty: by the BSDF alone, whatever `learn_light` says.
-  std::shared_ptr<const LearnedLight> learned;
+  // FrameRenderer trains the field; trace() itself only follows `guiding_field`.
+  bool guiding = true;
+  // trace() draws bounces by it. Empty: by the BSDF alone, whatever `guiding` says.
+  std::shared_ptr<const GuidingField> guiding_field;
   bool show_environment = true;           // false: it gives light, and is black where the camera sees it itself
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
   // The pixel filter is this many times as wide, above 0. So a frame of an eighth of the size shows, with 1/8, single
@@ -130,7 +130,7 @@ struct RegionTraceStats {
 
 struct TraceStats {
   std::uint64_t samples = 0;
-  std::uint64_t learning_paths = 0;  // of PosedScene::learn_light(): no samples, and nothing else here counts them
+  std::uint64_t training_paths = 0;  // of PosedScene::train_guiding(): no samples, and nothing else here counts them
   std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0;
   std::uint64_t rejected_rays = 0;
   std::uint64_t seen_backs = 0;          // samples whose camera ray hit the back of a face that is not double-sided
@@ -140,9 +140,9 @@ struct TraceStats {
   std::string kernel;  // name of the kernel variant that was used
 };
 
-// What a frame has learned of its light.
-struct LightLearning {
-  std::shared_ptr<const LearnedLight> light;  // empty where it would not pay, and with LightSampling::light_only
+// The guiding field that was trained for a frame.
+struct TrainedGuiding {
+  std::shared_ptr<const GuidingField> field;  // empty where it would not pay, and with LightSampling::light_only
   std::uint64_t paths = 0;                    // that it took, which are discarded
 };
 
@@ -245,11 +245,11 @@ class PosedScene {
                                   const TraceSettings& settings) const;
 
   // Traces up to one path for every eight pixels, at most 65536: first 4096 of them, and the others only where those
-  // promise a gain. Learns from them for each place from where light arrives (Müller, Gross and Novák, "Practical Path
+  // promise a gain. Trains on them for each place from where light arrives (Müller, Gross and Novák, "Practical Path
   // Guiding for Efficient Light-Transport Simulation", 2017). The result depends on the pose, the arguments and the
-  // seed, not on what is traced with it: frames between which nothing moves learn the same.
-  [[nodiscard]] LightLearning learn_light(const Camera& camera, int width_px, int height_px,
-                                          const TraceSettings& settings) const;
+  // seed, not on what is traced with it: frames between which nothing moves train the same field.
+  [[nodiscard]] TrainedGuiding train_guiding(const Camera& camera, int width_px, int height_px,
+                                             const TraceSettings& settings) const;
 
   // First hits of every pixel, for filters. Error(usage) for numbers of rays out of range.
   [[nodiscard]] Guides guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const;

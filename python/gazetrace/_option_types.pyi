@@ -101,7 +101,7 @@ class JobOptions(TypedDict, total=False):
     russian_roulette: bool | None
     diffuse: Value | None
     light_sampling: Value | None
-    learn_light: bool | None
+    guiding: bool | None
     clamp_indirect: Value | None
     pixel_filter: Value | None
     seed: Value | None

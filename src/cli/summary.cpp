@@ -18,7 +18,7 @@ struct Stage {
   double TimingRow::*ms;
 };
 constexpr std::array<Stage, 12> kStages{{{"plan", &TimingRow::plan_ms},
-                                         {"learn", &TimingRow::learn_ms},
+                                         {"guiding", &TimingRow::guiding_ms},
                                          {"pilot", &TimingRow::pilot_ms},
                                          {"trace", &TimingRow::trace_ms},
                                          {"guides", &TimingRow::guides_ms},

@@ -65,7 +65,7 @@ void settle_exposure(PathTracer& tracer, ResolvedJob& resolved) {
   settings.foveation.spp = kProbeSpp;
   settings.trace = resolved.pipeline.trace;
   settings.trace.seed = 0;
-  settings.trace.learn_light = false;
+  settings.trace.guiding = false;
   settings.trace.only_pixel.reset();
   settings.reconstruction = {"none"};
   settings.exposure = exposure;

@@ -18,7 +18,7 @@ Settings paper_settings(const std::string& sampling, const std::string& eccentri
           {"filter", "linear"},     {"accumulate", "off"},
           {"bounces", "3"},         {"russian-roulette", "false"},
           {"diffuse", "burley"},    {"light-sampling", "mis"},
-          {"learn-light", "false"}, {"pixel-filter", "box"},
+          {"guiding", "false"},     {"pixel-filter", "box"},
           {"clamp-indirect", "0"},  {"exposure", "auto"},
           {"view", "Reinhard"}};
 }
@@ -41,7 +41,7 @@ const std::vector<Preset>& presets() {
         {"filter", "none"},
         {"accumulate", "off"},
         {"clamp-indirect", "0"},
-        {"learn-light", "false"},
+        {"guiding", "false"},
         {"exr-pixels", "float"}}},
   };
   return table;

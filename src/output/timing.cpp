@@ -21,7 +21,7 @@ template <class Row, class Visit>
 void for_each_column(Row& row, const Visit& visit) {
   visit("frame", row.frame);
   visit("plan_ms", row.plan_ms);
-  visit("learn_ms", row.learn_ms);
+  visit("guiding_ms", row.guiding_ms);
   visit("pilot_ms", row.pilot_ms);
   visit("trace_ms", row.trace_ms);
   visit("guides_ms", row.guides_ms);
@@ -37,7 +37,7 @@ void for_each_column(Row& row, const Visit& visit) {
   visit("samples", row.samples);
   visit("pilot_samples", row.pilot_samples);
   visit("other_samples", row.other_samples);
-  visit("learning_paths", row.learning_paths);
+  visit("training_paths", row.training_paths);
   visit("rays_primary", row.rays_primary);
   visit("rays_bounce", row.rays_bounce);
   visit("rays_shadow", row.rays_shadow);

@@ -26,16 +26,16 @@ FrameRenderer::FrameRenderer(PathTracer& tracer, FrameSettings settings)
       reconstruction_(settings_.reconstruction),
       tables_(matte_tables(tracer.scene(), settings_.layers.mattes)) {}
 
-bool FrameRenderer::knows_light(const KnownLight& known, const FrameRequest& request) const {
+bool FrameRenderer::is_trained(const TrainedField& known, const FrameRequest& request) const {
   return known.request && (known.request->frame == request.frame || at_rest(*known.request, request));
 }
 
-std::shared_ptr<const LearnedLight> FrameRenderer::learned_light(const PosedScene& scene, const FrameRequest& request,
-                                                                 KnownLight& known, TraceStats& stats) const {
+std::shared_ptr<const GuidingField> FrameRenderer::guiding_field(const PosedScene& scene, const FrameRequest& request,
+                                                                 TrainedField& known, TraceStats& stats) const {
   if (settings_.light_of) {
     return settings_.light_of(request);
   }
-  if (!knows_light(known, request)) {
+  if (!is_trained(known, request)) {
     known = {};
     // A part of a frame knows what the frame does.
     const FrameWindow& window = request.window;
@@ -45,29 +45,29 @@ std::shared_ptr<const LearnedLight> FrameRenderer::learned_light(const PosedScen
       camera.middle_px.x -= window.x_px + 0.5 * (request.width_px - window.frame_width_px);
       camera.middle_px.y -= window.y_px + 0.5 * (request.height_px - window.frame_height_px);
     }
-    LightLearning learning =
-        scene.learn_light(camera, window.is_part() ? window.frame_width_px : request.width_px,
-                          window.is_part() ? window.frame_height_px : request.height_px, settings_.trace);
-    stats.learning_paths += learning.paths;
-    known = {request, std::move(learning.light)};
+    TrainedGuiding training =
+        scene.train_guiding(camera, window.is_part() ? window.frame_width_px : request.width_px,
+                            window.is_part() ? window.frame_height_px : request.height_px, settings_.trace);
+    stats.training_paths += training.paths;
+    known = {request, std::move(training.field)};
   }
-  return known.light;
+  return known.field;
 }
 
 TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
-  KnownLight none;
+  TrainedField none;
   return trace(request, none);
 }
 
-TracedFrame FrameRenderer::trace(const FrameRequest& request, KnownLight& known) const {
+TracedFrame FrameRenderer::trace(const FrameRequest& request, TrainedField& known) const {
   TracedFrame traced;
   StageTimes& times = traced.times;
   const PosedScene scene = timed(times.trace_ms, [&] { return tracer_->at(shutter_of(request)); });
-  // The pilot sees the noise that the frame will have, so that it knows what that has learned.
+  // The pilot sees the noise that the frame will have, so that it is guided as that is.
   FrameSettings frame_settings = settings_;
-  if (settings_.trace.learn_light) {
-    frame_settings.trace.learned =
-        timed(times.learn_ms, [&] { return learned_light(scene, request, known, traced.pilot); });
+  if (settings_.trace.guiding) {
+    frame_settings.trace.guiding_field =
+        timed(times.guiding_ms, [&] { return guiding_field(scene, request, known, traced.pilot); });
   }
   MapContext context = map_context(request, settings_.trace.seed, settings_.threads);
   FoveationSettings foveation = settings_.foveation;
@@ -103,11 +103,11 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request, KnownLight& known)
 }
 
 RenderedFrame FrameRenderer::render(const FrameRequest& request) const {
-  KnownLight none;
+  TrainedField none;
   return render(request, none);
 }
 
-RenderedFrame FrameRenderer::render(const FrameRequest& request, KnownLight& known) const {
+RenderedFrame FrameRenderer::render(const FrameRequest& request, TrainedField& known) const {
   return finish(request, trace(request, known));
 }
 
@@ -122,7 +122,7 @@ bool FrameRenderer::at_rest(const FrameRequest& a, const FrameRequest& b) const 
   return !tracer_->moves() && a.width_px == b.width_px && a.height_px == b.height_px && same_camera(a.camera, b.camera);
 }
 
-WindowFrame FrameRenderer::window_frame(const FrameRequest& request, KnownLight& known) const {
+WindowFrame FrameRenderer::window_frame(const FrameRequest& request, TrainedField& known) const {
   WindowFrame frame{request, trace(request, known), {}, {}};
   frame.hits = timed(frame.traced.times.temporal_ms, [&] {
     return tracer_->at(shutter_of(request))

@@ -20,7 +20,7 @@ auto timed(double& ms, Stage&& stage) {
 template <class From, class To>
 void add_times(const From& from, To& to) {
   to.plan_ms += from.plan_ms;
-  to.learn_ms += from.learn_ms;
+  to.guiding_ms += from.guiding_ms;
   to.pilot_ms += from.pilot_ms;
   to.trace_ms += from.trace_ms;
   to.guides_ms += from.guides_ms;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames in order: each by itself, or beside those around it, which are traced ahead and kept while frames to come read
-// them. Frames at rest share what they have learned of their light.
+// them. Frames at rest share one guiding field.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ class JoinedFrames {
   std::map<std::int32_t, const FrameRequest*> requests_;  // of the plan, those around its frames included
   std::set<std::int32_t> counted_;
   std::map<std::int32_t, WindowFrame> in_memory_;
-  KnownLight light_;
+  TrainedField light_;
 };
 
 }  // namespace gazetrace

@@ -46,7 +46,7 @@ TimingRow timing_row(const FrameRequest& request) {
 TimingRow lost_timing_row(const FrameRequest& request, std::optional<double> exposure_ev) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   TimingRow row = timing_row(request);
-  for (double* ms : {&row.plan_ms, &row.learn_ms, &row.pilot_ms, &row.trace_ms, &row.guides_ms, &row.reconstruct_ms,
+  for (double* ms : {&row.plan_ms, &row.guiding_ms, &row.pilot_ms, &row.trace_ms, &row.guides_ms, &row.reconstruct_ms,
                      &row.temporal_ms, &row.exposure_ms, &row.layers_ms, &row.color_ms, &row.write_ms, &row.total_ms,
                      &row.trace_cpu_ms, &row.peak_memory_mib}) {
     *ms = kUnknown;

@@ -15,7 +15,7 @@ inline double pixels_of(const FrameRequest& request) {
 template <class From, class To>
 void add_counts(const From& from, To& to) {
   to.samples += from.samples;
-  to.learning_paths += from.learning_paths;
+  to.training_paths += from.training_paths;
   to.rays_primary += from.rays_primary;
   to.rays_bounce += from.rays_bounce;
   to.rays_shadow += from.rays_shadow;

@@ -46,7 +46,7 @@ double peak_memory_since_mib() {
 }
 
 double render_ms(const TimingRow& row) {
-  return row.plan_ms + row.learn_ms + row.pilot_ms + row.trace_ms + row.guides_ms + row.reconstruct_ms +
+  return row.plan_ms + row.guiding_ms + row.pilot_ms + row.trace_ms + row.guides_ms + row.reconstruct_ms +
          row.temporal_ms;
 }
 
@@ -58,7 +58,7 @@ class RunSum {
     run_.rays += static_cast<double>(row.rays_primary + row.rays_bounce + row.rays_shadow);
     run_.pixels += static_cast<double>(row.pixels);
     run_.lost_samples += static_cast<double>(row.rejected_rays + row.non_finite_samples);
-    run_.trace_reconstruct_ms += row.learn_ms + row.pilot_ms + row.trace_ms + row.guides_ms + row.reconstruct_ms;
+    run_.trace_reconstruct_ms += row.guiding_ms + row.pilot_ms + row.trace_ms + row.guides_ms + row.reconstruct_ms;
     stored_.trace_ms += row.trace_ms;
     stored_.trace_cpu_ms += row.trace_cpu_ms;
     const std::vector<std::string>& regions = timing_regions();

@@ -75,12 +75,12 @@ std::string light_of_references(const SweepPlan& plan) {
   std::vector<std::string> texts;
   for (const SweepReference& reference : plan.references) {
     const TraceSettings& trace = reference.pipeline.trace;
-    texts.push_back(fmt::format(
-        "{} bounces, {}, {}, {}, filter {}", trace.max_bounces,
-        trace.clamp_indirect > 0 ? fmt::format("indirect light clamped at {:g}", trace.clamp_indirect)
-                                 : "indirect light not clamped",
-        trace.russian_roulette ? "Russian roulette" : "no Russian roulette",
-        trace.learn_light ? "learned light" : "no learned light", reference.pipeline.reconstruction.filter));
+    texts.push_back(
+        fmt::format("{} bounces, {}, {}, {}, filter {}", trace.max_bounces,
+                    trace.clamp_indirect > 0 ? fmt::format("indirect light clamped at {:g}", trace.clamp_indirect)
+                                             : "indirect light not clamped",
+                    trace.russian_roulette ? "Russian roulette" : "no Russian roulette",
+                    trace.guiding ? "path guiding" : "no path guiding", reference.pipeline.reconstruction.filter));
   }
   return each_once(texts);
 }
@@ -187,7 +187,7 @@ std::string sweep_methods(const SweepPlan& plan, const Results& results) {
       "alternates, "
       "after {} unmeasured frame(s) of each row; intervals are 95 % by Student's t over the repeats, those of "
       "speed-ups over the logarithms of pairwise ratios, and those of errors by the logarithm of their mean. Times are "
-      "of the sampling map, learning of light, path tracing, "
+      "of the sampling map, training of path guiding, path tracing, "
       "reconstruction and "
       "temporal "
       "accumulation (and bilinear upscaling of linear light, where a picture was rendered on fewer pixels), without "

@@ -125,7 +125,7 @@ Job reference_job(const SweepRequest& request, const SweepFileScene& scene, cons
   for (const auto& [option, value] :
        {std::pair("sampling", "uniform"), std::pair("spp", "256"), std::pair("filter", "none"),
         std::pair("accumulate", "off"), std::pair("russian-roulette", "false"), std::pair("clamp-indirect", "0"),
-        std::pair("learn-light", "false")}) {
+        std::pair("guiding", "false")}) {
     set_option(job, option, {value}, {Origin::file, {}, {}, {}}, option, schema);
   }
   if (request.file.reference.is_auto) {

@@ -9,7 +9,7 @@
 #include "trace/guides/coverage.hpp"
 #include "trace/guides/first_hits.hpp"
 #include "trace/guides/guides.hpp"
-#include "trace/guiding/learning_pass.hpp"
+#include "trace/guiding/training_pass.hpp"
 #include "trace/kernel/kernel.hpp"
 #include "trace/motion/surface_motion.hpp"
 #include "trace/rays/camera_rays.hpp"
@@ -126,21 +126,22 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
   const CameraRays rays(tracer_->pose(times_, camera), map.height_px);
   const NamedKernel& variant = tracer_->kernel_variant();
   FrameContext context = make_frame_context(*tracer_->scene, *tracer_->render_scene, *tracer_->lights, rays, settings);
-  context.learned = settings.learned.get();
+  context.guiding_field = settings.guiding_field.get();
   SparseFrame out = trace_frame(context, variant.run, frame, map, tracer_->options.threads);
   out.stats.kernel = variant.name;
   return out;
 }
 
-LightLearning PosedScene::learn_light(const Camera& camera, int width_px, int height_px,
-                                      const TraceSettings& settings) const {
+TrainedGuiding PosedScene::train_guiding(const Camera& camera, int width_px, int height_px,
+                                         const TraceSettings& settings) const {
   if (settings.light_sampling == LightSampling::light_only) {
     return {};
   }
   const CameraRays rays(tracer_->pose(times_, camera), height_px);
   const FrameContext context =
       make_frame_context(*tracer_->scene, *tracer_->render_scene, *tracer_->lights, rays, settings);
-  return gazetrace::learn_light(context, tracer_->kernel_variant().run, width_px, height_px, tracer_->options.threads);
+  return gazetrace::train_guiding(context, tracer_->kernel_variant().run, width_px, height_px,
+                                  tracer_->options.threads);
 }
 
 Guides PosedScene::guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const {

@@ -65,7 +65,7 @@ class Bench:
             yield f"tenth {k}", tenth == k
 
     def compare(self, name, scene):
-        uniform = ["--sampling", "uniform", "--no-learn-light", "--spp", str(self.asked.uniform_spp)]
+        uniform = ["--sampling", "uniform", "--no-guiding", "--spp", str(self.asked.uniform_spp)]
         plain = self.frames(name, "uniform", scene, 1, *uniform)
         adaptive = self.frames(name, "adaptive", scene, 3, *shlex.split(self.asked.adaptive))
         of_class = self.frames(name, "classes", scene, 2, *uniform)

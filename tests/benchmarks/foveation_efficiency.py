@@ -26,7 +26,7 @@ import subprocess
 import sys
 import tempfile
 
-STAGES = ["plan", "learn", "guides", "trace", "reconstruct", "temporal", "exposure", "color", "write", "total"]
+STAGES = ["plan", "guiding", "guides", "trace", "reconstruct", "temporal", "exposure", "color", "write", "total"]
 REGIONS = ["fovea", "intermediate", "periphery"]
 
 
@@ -49,7 +49,7 @@ def median(rows, key):
 
 
 def rendering_ms(row):
-    return row["learn_ms"] + row["guides_ms"] + row["trace_ms"] + row["reconstruct_ms"] + row["temporal_ms"]
+    return row["guiding_ms"] + row["guides_ms"] + row["trace_ms"] + row["reconstruct_ms"] + row["temporal_ms"]
 
 
 def efficiency(uniform, foveated):

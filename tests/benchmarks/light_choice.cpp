@@ -2,15 +2,15 @@
 // What ways of finding light cost and give, beside the default in one run: error times time of a frame at several
 // rates.
 //   gazetrace_light_choice SCENE.gltf[=SKY.hdr] | lamps:N  [--eye X,Y,Z] [--target X,Y,Z] [--fov DEG] [--size 320x180]
-//       [--rows learned,bsdf-only,learned+roulette] [--spp 1,4,16,64] [--seeds 16] [--reference 4x256]
+//       [--rows guiding,bsdf-only,guiding+roulette] [--spp 1,4,16,64] [--seeds 16] [--reference 4x256]
 //       [--bounces N]
 // A row is one or several of the words of kWords.
 // The reference is rendered with the default choice: so many scramblings of so many samples, none of them a row's. Rows
 // take turns frame by frame, on one thread. Printed for each row and rate:
 //   error   mean over the pixels and seeds of the squared error by the squared reference, and of one default sample
 //   by      that of the default at the same rate, with its standard error over the seeds; `time` is the median of the
-//           ratios of turns and counts everything that PosedScene::trace() does, and learn_light() before it; `cost` is
-//           the product of both
+//           ratios of turns and counts everything that PosedScene::trace() does, and train_guiding() before it; `cost`
+//           is the product of both
 //   typical median over the pixels of the ratio of squared errors
 //   top     99.99th percentile over pixels and seeds of a pixel over its reference, by that of the default
 //   mean    the frame's mean over the reference's, with its standard error over the seeds
@@ -99,12 +99,12 @@ constexpr Word kWords[] = {
     {"light-only", [](TraceSettings& s) { s.light_sampling = LightSampling::light_only; }},
     {"bsdf-only", [](TraceSettings& s) { s.light_sampling = LightSampling::bsdf_only; }},
     {"roulette", [](TraceSettings& s) { s.russian_roulette = true; }},
-    {"learned", [](TraceSettings& s) { s.learn_light = true; }},
+    {"guiding", [](TraceSettings& s) { s.guiding = true; }},
 };
 
-// Only the rows that say so learn light.
+// Only the rows that say so are guided.
 TraceSettings settings_of(const std::string& row, TraceSettings settings) {
-  settings.learn_light = false;
+  settings.guiding = false;
   for (std::size_t begin = 0; begin < row.size();) {
     const std::size_t end = std::min(row.find('+', begin), row.size());
     const std::string word = row.substr(begin, end - begin);
@@ -203,8 +203,8 @@ void take_turn(Row& row, const PosedScene& scene, const Camera& camera, const Sa
                const Reference& reference, std::uint64_t seed) {
   row.settings.seed = seed;
   const std::int64_t begin_ns = thread_cpu_ns();
-  if (row.settings.learn_light) {
-    row.settings.learned = scene.learn_light(camera, map.width_px, map.height_px, row.settings).light;
+  if (row.settings.guiding) {
+    row.settings.guiding_field = scene.train_guiding(camera, map.width_px, map.height_px, row.settings).field;
   }
   const SparseFrame frame = scene.trace(camera, 0, map, row.settings);
   const std::int64_t end_ns = thread_cpu_ns();

@@ -118,9 +118,9 @@ int run(int argc, char** argv) {
   };
   FrameSettings settings = resolved.pipeline;
   settings.foveation.sampling = UniformSampling{};
-  settings.trace.learn_light = false;
+  settings.trace.guiding = false;
   const RenderedFrame best = render(settings, 1000003);
-  settings.trace.learn_light = resolved.pipeline.trace.learn_light;
+  settings.trace.guiding = resolved.pipeline.trace.guiding;
   const double ev = best.exposure_ev;
   const ImageGray reference = luminance_of(best.frame.radiance);
   const ImageGray reference_shown = displayed(best.frame.radiance, color, ev);

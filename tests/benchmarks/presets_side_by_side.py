@@ -63,7 +63,7 @@ def main():
         columns = [("paper", *render(arguments, extra, folder, "paper", ["--preset", "paper"]))]
         budget = str(columns[0][2])
         columns.insert(0, ("uniform", *render(arguments, extra, folder, "uniform",
-                                              ["--sampling", "uniform", "--spp", budget, "--filter", "none", "--no-learn-light"])))
+                                              ["--sampling", "uniform", "--spp", budget, "--filter", "none", "--no-guiding"])))
         for label, options in (("default", ["--preset", "default"]),
                                ("reference", ["--preset", "reference", "--spp", arguments.reference_spp])):
             columns.append((label, *render(arguments, extra, folder, label, options)))

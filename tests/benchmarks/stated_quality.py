@@ -61,7 +61,7 @@ class Bench:
         half = str(self.asked.reference_spp // 2)
         for k, seed in enumerate((700001, 700002)):
             self.render(self.out / name / f"half{k}", scene, "0.5,0.5", "--frames", "1", "--sampling", "uniform", "--filter",
-                        "none", "--no-learn-light", "--spp", half, "--seed", str(seed))
+                        "none", "--no-guiding", "--spp", half, "--seed", str(seed))
         if not folder.exists():
             folder.mkdir()
             mean_of_exr(*(self.out / name / f"half{k}" / "f.0001.exr" for k in range(2)), folder / "f.0001.exr")

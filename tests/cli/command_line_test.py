@@ -68,11 +68,11 @@ class Help(harness.CliTest):
 class GivenTwice(harness.CliTest):
     def test_the_last_one_wins(self):
         text = self.run_ok("render", "--spp", "3", "--size", "8x8", "--spp=5", "--size", "64x36", "--region-samples", "4,2,1",
-                           "--region-samples", "8,4,2", "--learn-light", "--no-learn-light", "--overwrite", "--overwrite",
+                           "--region-samples", "8,4,2", "--guiding", "--no-guiding", "--overwrite", "--overwrite",
                            "--print-config").stdout
-        for line in ("spp = 5", 'size = "64x36"', "region-samples = [8, 4, 2]", "learn-light = false", "overwrite = true"):
+        for line in ("spp = 5", 'size = "64x36"', "region-samples = [8, 4, 2]", "guiding = false", "overwrite = true"):
             self.assertIn(f"\n{line}\n", text)
-        self.assertIn("\nlearn-light = true\n", self.run_ok("render", "--no-learn-light", "--learn-light", "--print-config").stdout)
+        self.assertIn("\nguiding = true\n", self.run_ok("render", "--no-guiding", "--guiding", "--print-config").stdout)
 
     def test_what_may_be_repeated_keeps_all_values(self):
         text = self.run_ok("render", "-o", "a.####.exr", "-o", "b.####.png", "--print-config").stdout

@@ -30,7 +30,7 @@ class Reference(harness.CliTest):
     def test_what_is_on_by_default_says_how_it_is_turned_off(self):
         listed = json.loads(self.run_ok("list", "options", "--json").stdout)
         off = {option["name"]: option["off"] for option in listed if "off" in option}
-        self.assertEqual(off.get("learn-light"), "no-learn-light")
+        self.assertEqual(off.get("guiding"), "no-guiding")
         self.assertEqual(set(off), {option["name"] for option in listed if option["default"] == ["true"]})
         for name, words in off.items():
             self.assertIn(f"\n{name} = true", self.run_ok("render", "--print-config").stdout)

@@ -131,7 +131,7 @@ TEST(Adaptive, TheFrameIsThatOfItsRatesWithNothingOfThePilot) {
   const FrameSettings settings = settings_of("adaptive");
   const TracedFrame traced = FrameRenderer(tracer, settings).trace(request_of());
   TraceSettings trace = settings.trace;
-  trace.learned = tracer.at({0, 0}).learn_light(request_of().camera, kWidth, kHeight, trace).light;
+  trace.guiding_field = tracer.at({0, 0}).train_guiding(request_of().camera, kWidth, kHeight, trace).field;
   const SparseFrame again = tracer.at({0, 0}).trace(request_of().camera, 1, traced.map, trace);
   EXPECT_EQ(traced.sparse.sum, again.sum);
   EXPECT_EQ(traced.sparse.count, again.count);

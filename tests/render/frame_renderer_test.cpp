@@ -75,15 +75,15 @@ TEST(FrameRenderer, MakesOfAFrameWhatItsStagesMakeOfIt) {
     TraceSettings trace = settings.trace;
     trace.surfaces = filter == "guided";
     trace.halves = filter == "guided";
-    trace.learned = by_hand.learn_light(request.camera, kWidth, kHeight, trace).light;
+    trace.guiding_field = by_hand.train_guiding(request.camera, kWidth, kHeight, trace).field;
     const SparseFrame sparse = by_hand.trace(request.camera, request.frame, map, trace);
     const Guides guides = by_hand.guides(request.camera, kWidth, kHeight, {.edge_rays = 4});
     const Frame frame = Reconstruction({filter}).frame(sparse, map, filter == "guided" ? &guides : nullptr);
     EXPECT_TRUE(same_picture(rendered.frame.radiance, frame.radiance, filter));
     EXPECT_EQ(rendered.frame.variance, frame.variance);
     EXPECT_EQ(rendered.samples.samples, map.samples());
-    EXPECT_EQ(rendered.pilot.samples, 0U);  // the paths that it learns from are none
-    EXPECT_GT(rendered.pilot.learning_paths, 0U);
+    EXPECT_EQ(rendered.pilot.samples, 0U);  // the paths that it trains from are none
+    EXPECT_GT(rendered.pilot.training_paths, 0U);
     EXPECT_EQ(rendered.times.guides_ms > 0, filter == "guided");
   }
 }

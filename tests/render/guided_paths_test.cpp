@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Paths that draw directions from what the frame has learned: means that do not change, less noise where the sky is
+// Paths that draw directions from what the frame has guided: means that do not change, less noise where the sky is
 // hidden, the same bits for any thread count.
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "render/tracer_scenes.hpp"
 #include "render/tracer_statistics.hpp"
 #include "support/picture_evidence.hpp"
-#include "trace/guiding/learned_light.hpp"
+#include "trace/guiding/guiding_field.hpp"
 
 namespace gazetrace {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 using namespace test;
 
 constexpr int kRepeats = 32;
-constexpr int kLearnWidth = 256, kLearnHeight = 192;
+constexpr int kGuidingWidth = 256, kGuidingHeight = 192;
 
 // A room with a hole in a wall, through which a bright sky shines. Its floor may be polished, its box varnished.
 Scene room(bool glossy, bool layered) {
@@ -49,8 +49,8 @@ Scene room(bool glossy, bool layered) {
 
 const Camera kCamera = camera_at({-2.5, 1.6, 2.0}, {0.8, 0.7, 0});
 
-std::shared_ptr<const LearnedLight> learn(PathTracer& tracer, const TraceSettings& settings) {
-  return tracer.at_rest().learn_light(kCamera, kLearnWidth, kLearnHeight, settings).light;
+std::shared_ptr<const GuidingField> train(PathTracer& tracer, const TraceSettings& settings) {
+  return tracer.at_rest().train_guiding(kCamera, kGuidingWidth, kGuidingHeight, settings).field;
 }
 
 Repeats repeat(PathTracer& tracer, const SamplingMap& map, TraceSettings settings) {
@@ -63,10 +63,10 @@ Repeats repeat(PathTracer& tracer, const SamplingMap& map, TraceSettings setting
 }
 
 // Tables that know nothing of the scene: narrow lobes at random, as bad as they can be.
-std::shared_ptr<const LearnedLight> learned_nonsense() {
+std::shared_ptr<const GuidingField> nonsense_field() {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
-  std::vector<LearningRecord> records;
+  std::vector<TrainingRecord> records;
   for (std::uint32_t i = 0; i < 60000; ++i) {
     const Vec3f place{3 * uniform(random), 1.5F + 1.5F * uniform(random), 3 * uniform(random)};
     const Vec3f toward = to_float(normalize(Vec3d{uniform(random) + 1e-3, uniform(random), uniform(random)}));
@@ -76,11 +76,11 @@ std::shared_ptr<const LearnedLight> learned_nonsense() {
       records.push_back({place, normal, toward, 0.08F, 0.08F, bright ? 1.0F : 0.01F, i});
     }
   }
-  return std::make_shared<const LearnedLight>(records, 1);
+  return std::make_shared<const GuidingField>(records, 1);
 }
 
 TEST(GuidedPaths, MeansDoNotChange) {
-  const std::shared_ptr<const LearnedLight> nonsense = learned_nonsense();
+  const std::shared_ptr<const GuidingField> nonsense = nonsense_field();
   ASSERT_TRUE(nonsense->pays());
   for (const bool glossy : {false, true}) {
     for (const bool layered : {false, true}) {
@@ -92,13 +92,13 @@ TEST(GuidedPaths, MeansDoNotChange) {
         settings.diffuse = diffuse;
         const Repeats plain = repeat(tracer, map, settings);
         TraceSettings guided = settings;
-        guided.learned = learn(tracer, settings);
-        ASSERT_NE(guided.learned, nullptr);
-        const Repeats learned = repeat(tracer, map, guided);
-        EXPECT_LT(std::fabs(welch_t(plain, learned)), kCriticalT) << plain.mean() << " " << learned.mean();
-        EXPECT_LT(std::sqrt(learned.variance_of_mean()), 0.01 * learned.mean()) << "too noisy to mean anything";
-        EXPECT_NE(plain.means, learned.means);
-        guided.learned = nonsense;
+        guided.guiding_field = train(tracer, settings);
+        ASSERT_NE(guided.guiding_field, nullptr);
+        const Repeats with_field = repeat(tracer, map, guided);
+        EXPECT_LT(std::fabs(welch_t(plain, with_field)), kCriticalT) << plain.mean() << " " << with_field.mean();
+        EXPECT_LT(std::sqrt(with_field.variance_of_mean()), 0.01 * with_field.mean()) << "too noisy to mean anything";
+        EXPECT_NE(plain.means, with_field.means);
+        guided.guiding_field = nonsense;
         guided.light_sampling = LightSampling::mis;
         const Repeats misled = repeat(tracer, map, guided);
         EXPECT_LT(std::fabs(welch_t(plain, misled)), kCriticalT) << plain.mean() << " " << misled.mean();
@@ -128,8 +128,8 @@ TEST(GuidedPaths, MeansDoNotChangeUnderLamps) {
   settings.max_bounces = 6;
   const Repeats plain = repeat(tracer, map, settings);
   settings.russian_roulette = true;
-  for (const std::shared_ptr<const LearnedLight>& light : {learn(tracer, settings), learned_nonsense()}) {
-    settings.learned = light;
+  for (const std::shared_ptr<const GuidingField>& light : {train(tracer, settings), nonsense_field()}) {
+    settings.guiding_field = light;
     const Repeats guided = repeat(tracer, map, settings);
     EXPECT_LT(std::fabs(welch_t(plain, guided)), kCriticalT) << plain.mean() << " " << guided.mean();
     EXPECT_LT(std::sqrt(guided.variance_of_mean()), 0.01 * guided.mean()) << "too noisy to mean anything";
@@ -141,7 +141,7 @@ TEST(GuidedPaths, LessNoiseInARoom) {
   PathTracer tracer(scene, threads(2));
   const SamplingMap map = uniform_map(48, 32, 16);
   TraceSettings settings;
-  settings.max_bounces = 3;  // the noise of roulette is what learning does not change
+  settings.max_bounces = 3;  // the noise of roulette is what training does not change
   settings.russian_roulette = false;
   settings.light_sampling = LightSampling::mis;
   const auto variance_of = [&](const TraceSettings& own) {
@@ -161,23 +161,23 @@ TEST(GuidedPaths, LessNoiseInARoom) {
     return repeats;
   };
   const Repeats plain = variance_of(settings);
-  settings.learned = learn(tracer, settings);
-  ASSERT_NE(settings.learned, nullptr);
-  const Repeats learned = variance_of(settings);
-  EXPECT_GT(welch_t(plain, learned), kCriticalT) << plain.mean() << " " << learned.mean();
+  settings.guiding_field = train(tracer, settings);
+  ASSERT_NE(settings.guiding_field, nullptr);
+  const Repeats guided = variance_of(settings);
+  EXPECT_GT(welch_t(plain, guided), kCriticalT) << plain.mean() << " " << guided.mean();
 }
 
 TEST(GuidedPaths, SameBitsForAnyThreads) {
   const Scene scene = room(true, true);
   const SamplingMap map = uniform_map(48, 32, 4);
-  const auto traced = [&](int count, std::uint64_t learning_seed) {
+  const auto traced = [&](int count, std::uint64_t training_seed) {
     PathTracer tracer(scene, threads(count));
     TraceSettings settings;
-    settings.seed = learning_seed;
-    LightLearning learning = tracer.at_rest().learn_light(kCamera, kLearnWidth, kLearnHeight, settings);
-    EXPECT_GT(learning.paths, 5000U);
-    EXPECT_LE(learning.paths, 6200U);
-    settings.learned = learning.light;
+    settings.seed = training_seed;
+    TrainedGuiding training = tracer.at_rest().train_guiding(kCamera, kGuidingWidth, kGuidingHeight, settings);
+    EXPECT_GT(training.paths, 5000U);
+    EXPECT_LE(training.paths, 6200U);
+    settings.guiding_field = training.field;
     settings.seed = 3;
     return tracer.at_rest().trace(kCamera, 1, map, settings);
   };
@@ -188,7 +188,7 @@ TEST(GuidedPaths, SameBitsForAnyThreads) {
 }
 
 FrameRequest request_of(std::int32_t frame) {
-  return frame_request(frame, kCamera, kLearnWidth, kLearnHeight);
+  return frame_request(frame, kCamera, kGuidingWidth, kGuidingHeight);
 }
 
 FrameSettings one_sample() {
@@ -199,26 +199,26 @@ FrameSettings one_sample() {
   return settings;
 }
 
-TEST(GuidedPaths, FramesAtRestLearnOnce) {
+TEST(GuidedPaths, FramesAtRestTrainOnce) {
   const Scene scene = room(false, false);
   PathTracer tracer(scene, threads(2));
   const FrameRenderer renderer(tracer, one_sample());
-  KnownLight known;
-  EXPECT_GT(renderer.trace(request_of(1), known).pilot.learning_paths, 5000U);
+  TrainedField known;
+  EXPECT_GT(renderer.trace(request_of(1), known).pilot.training_paths, 5000U);
   const TracedFrame second = renderer.trace(request_of(2), known);
-  EXPECT_EQ(second.pilot.learning_paths, 0U);
+  EXPECT_EQ(second.pilot.training_paths, 0U);
   EXPECT_TRUE(same_samples(second.sparse, renderer.trace(request_of(2)).sparse, second.map));
 
   FrameRequest moved = request_of(3);
   moved.camera = camera_at({-2.4, 1.6, 2.0}, {0.8, 0.7, 0});
   const TracedFrame third = renderer.trace(moved, known);
-  EXPECT_GT(third.pilot.learning_paths, 5000U);
+  EXPECT_GT(third.pilot.training_paths, 5000U);
   EXPECT_TRUE(same_samples(third.sparse, renderer.trace(moved).sparse, third.map));
-  EXPECT_GT(renderer.trace(request_of(4), known).pilot.learning_paths, 5000U);
+  EXPECT_GT(renderer.trace(request_of(4), known).pilot.training_paths, 5000U);
 }
 
 // By default, and counted as what it is.
-TEST(GuidedPaths, AFrameLearnsBeforeItIsTraced) {
+TEST(GuidedPaths, AFrameIsTrainedBeforeItIsTraced) {
   const Scene scene = room(false, false);
   PathTracer tracer(scene, threads(2));
   const FrameRequest request = request_of(1);
@@ -226,35 +226,35 @@ TEST(GuidedPaths, AFrameLearnsBeforeItIsTraced) {
   const TracedFrame frame = FrameRenderer(tracer, settings).trace(request);
 
   TraceSettings by_hand = settings.trace;
-  by_hand.learned = learn(tracer, by_hand);
-  ASSERT_NE(by_hand.learned, nullptr);
+  by_hand.guiding_field = train(tracer, by_hand);
+  ASSERT_NE(by_hand.guiding_field, nullptr);
   EXPECT_TRUE(same_samples(frame.sparse, tracer.at_rest().trace(kCamera, 1, frame.map, by_hand), frame.map));
-  EXPECT_EQ(frame.sparse.stats.samples, static_cast<std::uint64_t>(kLearnWidth) * kLearnHeight);
+  EXPECT_EQ(frame.sparse.stats.samples, static_cast<std::uint64_t>(kGuidingWidth) * kGuidingHeight);
   EXPECT_EQ(frame.pilot.samples, 0U);
-  EXPECT_GT(frame.pilot.learning_paths, 5000U);
+  EXPECT_GT(frame.pilot.training_paths, 5000U);
   EXPECT_EQ(frame.pilot.rays_primary, 0U);
-  EXPECT_GT(frame.times.learn_ms, 0);
+  EXPECT_GT(frame.times.guiding_ms, 0);
   EXPECT_EQ(frame.times.pilot_ms, 0);
 
-  settings.trace.learn_light = false;
+  settings.trace.guiding = false;
   const TracedFrame plain = FrameRenderer(tracer, settings).trace(request);
   EXPECT_FALSE(same_samples(frame.sparse, plain.sparse, frame.map));
-  EXPECT_EQ(plain.pilot.learning_paths, 0U);
+  EXPECT_EQ(plain.pilot.training_paths, 0U);
 }
 
-TEST(GuidedPaths, NothingToLearn) {
+TEST(GuidedPaths, NothingToFind) {
   Scene scene = room(false, false);
   scene.environment = {};
   PathTracer tracer(scene, threads(2));
-  EXPECT_EQ(learn(tracer, {}), nullptr) << "it is dark";
+  EXPECT_EQ(train(tracer, {}), nullptr) << "it is dark";
   const Scene lit = room(false, false);
   PathTracer other(lit, threads(2));
   TraceSettings settings;
   settings.light_sampling = LightSampling::light_only;
-  EXPECT_EQ(learn(other, settings), nullptr);
+  EXPECT_EQ(train(other, settings), nullptr);
   settings.light_sampling = LightSampling::mis;
   settings.max_bounces = 0;
-  EXPECT_EQ(learn(other, settings), nullptr);
+  EXPECT_EQ(train(other, settings), nullptr);
 }
 
 }  // namespace

@@ -231,13 +231,13 @@ RenderedFrame third_frame(PathTracer& tracer, AccumulateMode mode, bool light) {
   settings.threads = 2;
   const FrameRenderer renderer(tracer, settings);
   std::vector<WindowFrame> frames;
-  KnownLight learned;
+  TrainedField guided;
   for (int frame = 1; frame <= 3; ++frame) {
     FrameRequest one = request();
     one.frame = frame;
     one.t_video_ns = one.shutter_open_ns = one.shutter_close_ns = 40'000'000LL * frame;
     one.camera = camera_at({0.02 * (frame - 3), 1, 5}, {0, 0, 0});
-    frames.push_back(renderer.window_frame(one, learned));
+    frames.push_back(renderer.window_frame(one, guided));
   }
   return mode == AccumulateMode::window ? renderer.finish({&frames[0], &frames[1], &frames[2]}, 2)
                                         : renderer.finish({&frames[2]}, 0);

@@ -42,8 +42,8 @@ FrameRequest request_of(std::int32_t frame) {
   return request;
 }
 
-// They know what the whole frame learns, which is more than a window of it would, and one of them learns it for all.
-TEST(WindowClip, WindowsAreLitByWhatTheWholeFrameLearns) {
+// They know what the whole frame trains, which is more than a window of it would, and one of them trains it for all.
+TEST(WindowClip, WindowsAreLitByWhatTheGuidingOfTheWholeFrame) {
   const Scene scene = room();
   PathTracer tracer(scene, threads(2));
   JudgedFrames judged;
@@ -55,21 +55,21 @@ TEST(WindowClip, WindowsAreLitByWhatTheWholeFrameLearns) {
   settings.reconstruction.filter = "guided";
   settings.frames_per_second = 24;
   settings.threads = 2;
-  settings.trace.max_bounces = 3;  // for which learning clearly pays in this room
+  settings.trace.max_bounces = 3;  // for which training clearly pays in this room
   settings.trace.russian_roulette = false;
   const ColorPipeline color(ColorSettings{});
   WindowClip clip(tracer, judged, settings, color);
   ASSERT_FALSE(clip.windows().is_whole_frame());
-  ASSERT_EQ(clip.stats().learning_paths, 0U);
+  ASSERT_EQ(clip.stats().training_paths, 0U);
   (void)clip.look(1, 0);
-  const LightLearning whole = tracer.at({0, 0}).learn_light(request_of(1).camera, kWidth, kHeight, settings.trace);
-  ASSERT_NE(whole.light, nullptr);
-  EXPECT_EQ(clip.stats().learning_paths, whole.paths);
+  const TrainedGuiding whole = tracer.at({0, 0}).train_guiding(request_of(1).camera, kWidth, kHeight, settings.trace);
+  ASSERT_NE(whole.field, nullptr);
+  EXPECT_EQ(clip.stats().training_paths, whole.paths);
 }
 
 FrameSettings settings_of(std::uint64_t seed) {
   FrameSettings settings;
-  settings.trace.max_bounces = 3;  // for which learning clearly pays in this room
+  settings.trace.max_bounces = 3;  // for which training clearly pays in this room
   settings.trace.russian_roulette = false;
   settings.trace.seed = seed;
   settings.threads = 2;
@@ -80,7 +80,7 @@ FrameSettings settings_of(std::uint64_t seed) {
 FrameSettings job_settings(std::uint64_t seed) {
   FrameSettings settings = settings_of(seed);
   settings.reconstruction.filter = "guided";
-  settings.trace.learn_light = true;
+  settings.trace.guiding = true;
   settings.trace.clamp_indirect = 0.1;
   settings.foveation.sampling = AdaptiveSampling{};
   settings.foveation.spp = 1;
@@ -164,11 +164,11 @@ TEST_F(WindowReferenceTest, EachHalfHasASampleInEveryPixel) {
   EXPECT_NEAR(static_cast<double>(reference.stats().samples), expected, 0.03 * expected);
 }
 
-// Light that is clamped, filters, and rates are the job's alone, and windows learn nothing for themselves.
+// Light that is clamped, filters, and rates are the job's alone, and windows trains nothing for themselves.
 TEST_F(WindowReferenceTest, IsTheSameForAllJobs) {
   const FrameSettings job = job_settings(1);
   const FrameSettings plain = settings_of(1);
-  EXPECT_FALSE(raw(job, 16, "none").trace.learn_light);  // too little is learned of windows_ as small as these
+  EXPECT_FALSE(raw(job, 16, "none").trace.guiding);  // too little is guided of windows_ as small as these
   WindowReference of_job(tracer_, windows_, {&request_}, job);
   WindowReference of_plain(tracer_, windows_, {&request_}, plain);
   of_job.refine(16);
@@ -198,11 +198,11 @@ TEST_F(WindowReferenceTest, ShowsTheLightThatUniformFramesShow) {
   }
 }
 
-// Bounces that follow what the whole frame has learned show the same light with less noise, where the job learns.
-TEST_F(WindowReferenceTest, FollowsWhatTheJobLearnsAndShowsTheSameLight) {
-  const LightLearning whole = tracer_.at({0, 0}).learn_light(request_.camera, kWidth, kHeight, settings_of(5).trace);
-  ASSERT_NE(whole.light, nullptr);
-  const auto light_of = [&](const FrameRequest&) { return whole.light; };
+// Bounces that follow what the whole frame has guided show the same light with less noise, where the job trains.
+TEST_F(WindowReferenceTest, FollowsTheGuidingOfTheJobAndShowsTheSameLight) {
+  const TrainedGuiding whole = tracer_.at({0, 0}).train_guiding(request_.camera, kWidth, kHeight, settings_of(5).trace);
+  ASSERT_NE(whole.field, nullptr);
+  const auto light_of = [&](const FrameRequest&) { return whole.field; };
   const JudgedWindow& window = windows_.windows[1];
   const FrameRequest part = part_of(request_, window.traced);
   const ImageRgb truth = uniform_picture(tracer_, part, 1024, 77);
@@ -212,20 +212,20 @@ TEST_F(WindowReferenceTest, FollowsWhatTheJobLearnsAndShowsTheSameLight) {
   double error_without = 0;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     const FrameSettings settings = job_settings(seed);
-    WindowReference learned(tracer_, windows_, {&request_}, settings, light_of);
+    WindowReference guided(tracer_, windows_, {&request_}, settings, light_of);
     WindowReference plain(tracer_, windows_, {&request_}, settings);
-    learned.refine(32);
+    guided.refine(32);
     plain.refine(32);
-    with.means.push_back(mean_luminance(learned.pictures().at(0).at(1)));
+    with.means.push_back(mean_luminance(guided.pictures().at(0).at(1)));
     without.means.push_back(mean_luminance(plain.pictures().at(0).at(1)));
-    error_with += squared_difference(learned.pictures().at(0).at(1), truth, window);
+    error_with += squared_difference(guided.pictures().at(0).at(1), truth, window);
     error_without += squared_difference(plain.pictures().at(0).at(1), truth, window);
   }
   EXPECT_LT(std::abs(welch_t(with, without)), kCriticalT) << with.mean() << ", " << without.mean();
   EXPECT_NEAR(with.mean() / without.mean(), 1, 0.02);
   EXPECT_LT(error_with / error_without, 0.9);
   FrameSettings job = job_settings(1);
-  job.trace.learn_light = false;
+  job.trace.guiding = false;
   WindowReference told(tracer_, windows_, {&request_}, job, light_of);
   WindowReference plain(tracer_, windows_, {&request_}, job);
   told.refine(4);

@@ -244,7 +244,7 @@ TEST(WindowRender, LightThatChangesDoesNotShowInOtherFrames) {
   const FrameSettings settings = uniform("none", 1, 4, 4);
   std::vector<WindowFrame> frames;
   for (int k = 1; k <= 9; ++k) {
-    KnownLight light;
+    TrainedField light;
     frames.push_back(FrameRenderer(k <= 5 ? before : after, settings).window_frame(request_of(k, false), light));
   }
   std::vector<const WindowFrame*> window;
@@ -300,7 +300,7 @@ TEST(WindowRender, WhatLooksDifferentFromElsewhereDoesNotJoin) {
   EXPECT_GT(sky, 100);
 }
 
-TEST(WindowRender, FramesAtRestLearnOnce) {
+TEST(WindowRender, FramesAtRestTrainOnce) {
   const Scene scene = room(false);
   for (const int reach : {0, 1}) {
     for (const bool moves : {false, true}) {
@@ -308,9 +308,9 @@ TEST(WindowRender, FramesAtRestLearnOnce) {
       const auto rows = render_sequence(tracer, plan_of(numbers(1, 3), {}, moves), ColorPipeline(ColorSettings{}),
                                         uniform("none", 1, reach, reach), {})
                             .rows;
-      EXPECT_GT(rows[0].learning_paths, 0U);
-      EXPECT_EQ(rows[1].learning_paths > 0, moves);
-      EXPECT_EQ(rows[2].learning_paths > 0, moves);
+      EXPECT_GT(rows[0].training_paths, 0U);
+      EXPECT_EQ(rows[1].training_paths > 0, moves);
+      EXPECT_EQ(rows[2].training_paths > 0, moves);
     }
   }
 }

@@ -34,8 +34,9 @@ void add_light_path_options(JobSchema& schema) {
       .with(Trait::trade_off)
       .with(Trait::always_stated);
   schema
-      .flag("--learn-light", trace(&TraceSettings::learn_light), Touch::tracing,
-            "Each frame learns from some paths of its own where its light arrives from, and draws bounces towards it: "
+      .flag("--guiding", trace(&TraceSettings::guiding), Touch::tracing,
+            "Path guiding: training paths of each frame find where its light arrives from, and bounces are drawn "
+            "towards it: "
             "less noise indoors and under arcades, without bias")
       .with(Trait::trade_off)
       .with(Trait::always_stated)

@@ -169,7 +169,7 @@ void add_rate(const ClipRate& rate, bool is_first, TimingRow& row) {
     return;
   }
   TraceStats discarded = rate.discarded;
-  discarded.learning_paths = 0;  // whose time is in pilot_ms with all that the choice took
+  discarded.training_paths = 0;  // whose time is in pilot_ms with all that the choice took
   add_pilot(discarded, row);
   row.pilot_ms += rate.ms;
   row.total_ms += rate.ms;

@@ -22,7 +22,7 @@ FrameSettings raw(FrameSettings settings, double spp, const char* filter) {
   settings.accumulate = {};
   settings.reconstruction = {filter};
   settings.trace.clamp_indirect = 0;
-  settings.trace.learn_light = false;
+  settings.trace.guiding = false;
   return settings;
 }
 

@@ -14,7 +14,7 @@ constexpr std::uint64_t kLookTag = 0x4c4f4f4bULL;
 // The job's own, with samples of their own that `tag` chooses, and nothing beside the picture.
 FrameSettings discarded(const FrameSettings& settings, std::uint64_t tag);
 
-// The same number of samples in every pixel, of light that is neither learned nor clamped, without accumulation.
+// The same number of samples in every pixel, neither guided nor clamped, without accumulation.
 FrameSettings raw(FrameSettings settings, double spp, const char* filter);
 
 }  // namespace gazetrace

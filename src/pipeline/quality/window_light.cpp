@@ -6,12 +6,12 @@
 
 #include "core/hash.hpp"
 #include "pipeline/quality/discarded.hpp"
-#include "trace/guiding/learned_light.hpp"
+#include "trace/guiding/guiding_field.hpp"
 
 namespace gazetrace {
 namespace {
 
-constexpr std::size_t kMostLightBytes = std::size_t{256} << 20U;  // of what frames have learned, kept at once
+constexpr std::size_t kMostLightBytes = std::size_t{256} << 20U;  // of guiding fields, kept at once
 
 }  // namespace
 
@@ -27,8 +27,8 @@ WindowLight::WindowLight(PathTracer& tracer, const JudgedFrames& judged, const F
   }
 }
 
-std::shared_ptr<const LearnedLight> WindowLight::of(std::int32_t frame, TraceStats& stats) {
-  if (!settings_.trace.learn_light) {
+std::shared_ptr<const GuidingField> WindowLight::of(std::int32_t frame, TraceStats& stats) {
+  if (!settings_.trace.guiding) {
     return nullptr;
   }
   const std::int32_t lit = judged_.view_moves ? frame : judged_.runs.front().front().frame;
@@ -39,18 +39,18 @@ std::shared_ptr<const LearnedLight> WindowLight::of(std::int32_t frame, TraceSta
     const FrameRequest& whole = *requests_.at(lit);
     TraceSettings own = settings_.trace;
     own.seed = hash_combine(own.seed, kLookTag);
-    LightLearning learning = tracer_.at({whole.shutter_open_ns, whole.shutter_close_ns})
-                                 .learn_light(whole.camera, whole.width_px, whole.height_px, own);
-    stats.learning_paths += learning.paths;
-    last_ = {whole, std::move(learning.light)};
+    TrainedGuiding training = tracer_.at({whole.shutter_open_ns, whole.shutter_close_ns})
+                                  .train_guiding(whole.camera, whole.width_px, whole.height_px, own);
+    stats.training_paths += training.paths;
+    last_ = {whole, std::move(training.field)};
   }
-  // Frames that no longer fit learn anew for each window, bit by bit the same.
-  const std::size_t bytes = last_.light ? last_.light->bytes() : 0;
+  // Fields that no longer fit are trained anew for each window, bit by bit the same.
+  const std::size_t bytes = last_.field ? last_.field->bytes() : 0;
   if (kept_bytes_ + bytes <= kMostLightBytes) {
     kept_bytes_ += bytes;
-    kept_.emplace(lit, last_.light);
+    kept_.emplace(lit, last_.field);
   }
-  return last_.light;
+  return last_.field;
 }
 
 }  // namespace gazetrace

@@ -93,7 +93,7 @@ ImageGray WindowRates::sum_of_pilots(const FrameRequest& request, FrameSettings 
 }
 
 ImageGray WindowRates::pilot_rates(const FrameRequest& request, FrameSettings settings, TraceStats& stats) {
-  settings.trace.learned = light_.of(request.frame, stats);
+  settings.trace.guiding_field = light_.of(request.frame, stats);
   AdaptiveRates adaptive =
       adaptive_rates(tracer_.at({request.shutter_open_ns, request.shutter_close_ns}), request, settings);
   add_traces(adaptive.pilot, stats);

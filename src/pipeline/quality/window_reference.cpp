@@ -94,7 +94,7 @@ void WindowReference::add_samples(double spp, std::size_t half) {
       own.foveation.sampling = density_of_picture();
       own.foveation.max_block_px = 1;
       own.foveation.spp.reset();
-      own.trace.learn_light = settings_.trace.learn_light && light_of_ != nullptr;
+      own.trace.guiding = settings_.trace.guiding && light_of_ != nullptr;
       own.light_of = light_of_;
       own.rates_of = [&](const FrameRequest&) {
         FrameRates rates{rates_[w], 0};

@@ -25,8 +25,8 @@ using WindowPictures = std::vector<std::vector<ImageRgb>>;
 
 class WindowReference {
  public:
-  // What the whole frame of a request has learned of its light.
-  using LightOf = std::function<std::shared_ptr<const LearnedLight>(const FrameRequest& request)>;
+  // The guiding field of the whole frame of a request.
+  using LightOf = std::function<std::shared_ptr<const GuidingField>(const FrameRequest& request)>;
 
   // Keeps references to all, which must outlive it. `views`: frames that are each to have a reference. Without
   // `light_of` bounces follow the BSDF alone.

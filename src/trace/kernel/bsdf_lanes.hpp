@@ -11,7 +11,7 @@
 #include "core/instruction_sets.hpp"
 #include "material/bsdf.hpp"
 #include "material/local_frame.hpp"
-#include "trace/guiding/learned_light.hpp"
+#include "trace/guiding/guiding_field.hpp"
 #include "trace/kernel/chunk.hpp"
 #include "trace/samples/sampler.hpp"
 
@@ -75,10 +75,10 @@ inline void choose_tables(ChunkHits& chunk, std::size_t count) {
   }
 }
 
-inline void take_directions_of_tables(ChunkHits& chunk, std::size_t count, const LearnedLight& learned) {
+inline void take_directions_of_tables(ChunkHits& chunk, std::size_t count, const GuidingField& field) {
   for (std::size_t i = 0; i < count; ++i) {
     if (chunk.by_table[i] != 0) {
-      const Vec3f world = learned.table(chunk.cell[i]).sample(chunk.random.get(i)).direction;
+      const Vec3f world = field.table(chunk.cell[i]).sample(chunk.random.get(i)).direction;
       const Vec3f direction = LocalFrame(chunk.shading.get(i)).to_local(world);
       const Vec3f middle = chunk.view.get(i) + direction;
       chunk.next.set(i, direction);
@@ -90,12 +90,12 @@ inline void take_directions_of_tables(ChunkHits& chunk, std::size_t count, const
 template <DiffuseModel kDiffuse>
 struct BsdfLanes {
   GAZETRACE_CLONES [[gnu::flatten, gnu::noinline]] static void evaluate(ChunkHits& chunk, std::size_t count, bool lit,
-                                                                        bool bounces, const LearnedLight* learned);
+                                                                        bool bounces, const GuidingField* field);
 };
 
 template <DiffuseModel kDiffuse>
 void BsdfLanes<kDiffuse>::evaluate(ChunkHits& chunk, std::size_t count, bool lit, bool bounces,
-                                   const LearnedLight* learned) {
+                                   const GuidingField* field) {
   for_lanes(
       count, [&](std::size_t i) __attribute__((always_inline)) {
         const LocalFrame local(chunk.shading.get(i));
@@ -119,7 +119,7 @@ void BsdfLanes<kDiffuse>::evaluate(ChunkHits& chunk, std::size_t count, bool lit
           chunk.light_pdf[i] = eval.pdf;
         });
   }
-  if (learned != nullptr) {
+  if (field != nullptr) {
     for_lanes(
         count, [&](std::size_t i) __attribute__((always_inline)) {
           chunk.table_share[i] *= 1.0F - bsdf_of<kDiffuse>(chunk, i).specular_probability();
@@ -133,8 +133,8 @@ void BsdfLanes<kDiffuse>::evaluate(ChunkHits& chunk, std::size_t count, bool lit
           chunk.next.set(i, chosen.direction);
           chunk.half.set(i, chosen.half);
         });
-    if (learned != nullptr) {
-      take_directions_of_tables(chunk, count, *learned);
+    if (field != nullptr) {
+      take_directions_of_tables(chunk, count, *field);
     }
     read_terms(chunk, count, chunk.next.z, chunk.next_terms);
     for_lanes(
@@ -167,11 +167,11 @@ auto with_model(DiffuseModel model, const Function& function) {
 }
 
 // Evaluates the BSDF of every lane towards its light sample where it is `lit`, and samples it where it `bounces`, with
-// the tables of `learned` unless there are none.
+// the tables of `field` unless there are none.
 inline void evaluate_lanes(DiffuseModel diffuse, ChunkHits& chunk, std::size_t count, bool lit, bool bounces,
-                           const LearnedLight* learned) {
+                           const GuidingField* field) {
   with_model(diffuse,
-             [&]<DiffuseModel kDiffuse>() { BsdfLanes<kDiffuse>::evaluate(chunk, count, lit, bounces, learned); });
+             [&]<DiffuseModel kDiffuse>() { BsdfLanes<kDiffuse>::evaluate(chunk, count, lit, bounces, field); });
 }
 
 // What one surface sends from `wi` to `wo`, both in the local frame: f times the cosine, of the diffuse lobe and of

@@ -92,9 +92,9 @@ struct ChunkHits {
   ChunkArray<float> random_lobe;
   ChunkVec3 next, next_weight;  // the BSDF sample
   ChunkArray<float> next_pdf, next_good;
-  // Only with FrameContext::learned: the cell of LearnedLight, the share of its table in the choice of a direction (the
-  // cell's own until evaluate_lanes has multiplied it by the probability of the diffuse lobe), and whether the
-  // direction is the table's.
+  // Only with FrameContext::guiding_field: the cell of GuidingField, the share of its table in the choice of a
+  // direction (the cell's own until evaluate_lanes has multiplied it by the probability of the diffuse lobe), and
+  // whether the direction is the table's.
   ChunkArray<std::int32_t> cell;
   ChunkArray<float> table_share;
   ChunkArray<float> next_bsdf_pdf;  // density of the BSDF alone towards `next`; set only where table_share > 0

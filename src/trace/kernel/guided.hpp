@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions that follow what the frame has learned of its light: a share of all directions is drawn from the table of
+// Directions that follow the guiding field of the frame: a share of all directions is drawn from the table of
 // the hit's cell, as large as the cell's own share times the probability of the diffuse lobe. The BSDF, both lobes in
 // their proportion, keeps the rest, and all densities are those of the mixture.
 // Taking the share from the diffuse lobe alone, and judging tables beside that lobe, was measured and not kept: more
 // variance in San Miguel and Lost Empire (tests/benchmarks/book/light.md).
 #pragma once
 
-#include "trace/guiding/learned_light.hpp"
+#include "trace/guiding/guiding_field.hpp"
 #include "trace/kernel/path_kernel.hpp"
 
 namespace gazetrace {
@@ -15,10 +15,10 @@ namespace gazetrace {
 template <bool kLayers>
 inline void PathKernel<kLayers>::find_cells(std::size_t count) {
   ChunkHits& chunk = work_.chunk;
-  const LearnedLight& learned = *frame_.learned;
+  const GuidingField& field = *frame_.guiding_field;
   for (std::size_t i = 0; i < count; ++i) {
-    chunk.cell[i] = learned.cell_at(chunk.position.get(i), chunk.shading.get(i));
-    chunk.table_share[i] = chunk.cell[i] < 0 ? 0.0F : learned.share(chunk.cell[i]);
+    chunk.cell[i] = field.cell_at(chunk.position.get(i), chunk.shading.get(i));
+    chunk.table_share[i] = chunk.cell[i] < 0 ? 0.0F : field.share(chunk.cell[i]);
     if (has_layers()) {
       if (frame_.scene->layered.of(chunk.material[i]) != nullptr) {
         chunk.table_share[i] = 0;
@@ -37,7 +37,7 @@ inline void PathKernel<kLayers>::mix_densities(std::size_t count, const LightSam
       continue;
     }
     chunk.next_bsdf_pdf[i] = chunk.next_pdf[i];
-    const DirectionTable& table = frame_.learned->table(chunk.cell[i]);
+    const DirectionTable& table = frame_.guiding_field->table(chunk.cell[i]);
     if (lights != nullptr && lights[i].valid && bounces) {
       chunk.light_pdf[i] = (1.0F - share) * chunk.light_pdf[i] + share * table.pdf(lights[i].direction);
     }

@@ -6,7 +6,7 @@
 
 #include "gazetrace/scene.hpp"
 #include "gazetrace/trace.hpp"
-#include "trace/guiding/learned_light.hpp"
+#include "trace/guiding/guiding_field.hpp"
 #include "trace/kernel/path_batch.hpp"
 #include "trace/lights/light_sampling.hpp"
 #include "trace/rays/camera_rays.hpp"
@@ -20,14 +20,14 @@ struct FrameContext {
   const LightSampler* lights = nullptr;
   const CameraRays* camera = nullptr;
   TraceSettings settings;
-  bool last_ray_finds_light = false;      // the ray after the last scattering event can still find light
-  bool last_ray_needs_surface = false;    // it can find light on a surface, so visibility of the sky is not enough
-  bool shifts_hits = false;               // samples may hit what the pinhole sees elsewhere in the frame
-  const LearnedLight* learned = nullptr;  // where light arrives from; empty: directions follow the BSDF alone
+  bool last_ray_finds_light = false;    // the ray after the last scattering event can still find light
+  bool last_ray_needs_surface = false;  // it can find light on a surface, so visibility of the sky is not enough
+  bool shifts_hits = false;             // samples may hit what the pinhole sees elsewhere in the frame
+  const GuidingField* guiding_field = nullptr;  // where light arrives from; empty: directions follow the BSDF alone
   // Rays are traced one by one: in packets, which of two surfaces a ray hits on their common edge may depend on the
   // other rays.
   bool single_rays = false;
-  bool records_bounces = false;     // Workspace::bounces are collected, for learning
+  bool records_bounces = false;     // Workspace::bounces are collected, for training
   RayRecorder* recorder = nullptr;  // for measurements only
 };
 

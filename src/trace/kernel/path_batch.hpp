@@ -9,7 +9,7 @@
 #include "gazetrace/guides.hpp"
 #include "gazetrace/light_groups.hpp"
 #include "gazetrace/math.hpp"
-#include "trace/guiding/learned_light.hpp"
+#include "trace/guiding/guiding_field.hpp"
 #include "trace/kernel/chunk.hpp"
 #include "trace/rays/ray_batch.hpp"
 #include "trace/samples/sampler.hpp"
@@ -79,12 +79,12 @@ struct LightGroupBatch {
   BatchVec3 diffuse;  // of what the path's next contributions are, the share that the first surface's diffuse lobe has
 };
 
-// Of a learning path; so memory is bounded whatever TraceSettings::max_bounces is.
+// Of a training path; so memory is bounded whatever TraceSettings::max_bounces is.
 inline constexpr int kRecordedBounces = 8;
 
-// A bounce of a path that others learn from, until the path is finished.
+// A bounce of a training path, until the path is finished.
 struct BounceFound {
-  LearningRecord record;
+  TrainingRecord record;
   float throughput = 0;    // luminance, after the bounce
   float shone_before = 0;  // luminance of the sample without what the bounce finds
   std::uint32_t slot = 0;

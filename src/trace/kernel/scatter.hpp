@@ -69,11 +69,11 @@ inline void PathKernel<kLayers>::scatter_chunk(int vertex, const PathBatch& path
     work_.chunk.random.set(i, bsdf_uv[i]);
     work_.chunk.random_lobe[i] = select[i].y;
   }
-  const bool guided = frame_.learned != nullptr && bounces;
+  const bool guided = frame_.guiding_field != nullptr && bounces;
   if (guided) {
     find_cells(count);
   }
-  evaluate_lanes(frame_.settings.diffuse, work_.chunk, count, lit, bounces, guided ? frame_.learned : nullptr);
+  evaluate_lanes(frame_.settings.diffuse, work_.chunk, count, lit, bounces, guided ? frame_.guiding_field : nullptr);
   if (guided) {
     mix_densities(count, lit ? lights.data() : nullptr, bounces);
   }
@@ -153,7 +153,8 @@ inline void PathKernel<kLayers>::take_bsdf_sample(int vertex, std::size_t i, con
   state.b[n] = weight.z;
   state.pdf[n] = chunk.next_pdf[i];
   if (frame_.records_bounces && vertex < kRecordedBounces) {
-    const bool mixed = frame_.learned != nullptr && chunk.table_share[i] > 0;  // layered materials have a share of 0
+    const bool mixed =
+        frame_.guiding_field != nullptr && chunk.table_share[i] > 0;  // layered materials have a share of 0
     const float bsdf_pdf = mixed ? chunk.next_bsdf_pdf[i] : chunk.next_pdf[i];
     work_.bounces.push_back(
         {{chunk.position.get(i), chunk.shading.get(i), direction, chunk.next_pdf[i], bsdf_pdf, 0.0F, 0U},

@@ -17,7 +17,7 @@ Every program renders the same glTF, camera, light, bounces and samples. In one 
   (common)    the same ratio of us * common
   furnace     radiance inside a closed box of albedo 1/2 that shines 1: 1 + 1/2 + ... + 2^-bounces if paths are equally long
 
-`gazetrace-plain` is gazetrace with --no-learn-light. What learned light gains depends on the size of the frame: measure
+`gazetrace-plain` is gazetrace with --no-guiding. What learned light gains depends on the size of the frame: measure
 errors at the size of the timed pictures.
 
 With --rates 1,4,16,64 a table for each rate instead: `us` is the time per sample of a picture of so many samples a pixel,
@@ -67,7 +67,7 @@ def command(program, options, scene, out, size, spp, seed, view):
     common = ["--size", size, "--spp", str(spp), "--seed", str(seed), "--bounces", str(options.bounces), *view]
     if program in ("gazetrace", "gazetrace-plain"):
         common += ["--no-russian-roulette"]
-        common += ["--no-learn-light"] if program == "gazetrace-plain" else []
+        common += ["--no-guiding"] if program == "gazetrace-plain" else []
         materials = ["--diffuse", "matte" if options.materials == "matte" else "burley"]
         # The scene without normal maps links to the files of the one that was given.
         return [options.gazetrace, "render", scene, *common, *materials, "--allow-outside", "--filter", "none",

@@ -29,7 +29,7 @@ class Gazetrace:
         with open(self.out.with_suffix(".timing.csv"), newline="") as file:
             row = next(csv.DictReader(file))
         # Of all but tracing only the wall time is known: as if it had kept all threads busy.
-        beside = sum(float(row[stage]) for stage in ("learn_ms", "plan_ms", "reconstruct_ms")) * len(os.sched_getaffinity(0))
+        beside = sum(float(row[stage]) for stage in ("guiding_ms", "plan_ms", "reconstruct_ms")) * len(os.sched_getaffinity(0))
         return (float(row["trace_cpu_ms"]) + beside) / 1000, self.out
 
     def close(self):

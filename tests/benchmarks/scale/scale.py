@@ -51,7 +51,7 @@ class Program:
         """(row of timing.csv as numbers, picture's path)"""
         picture = self.folder / "picture.exr"
         words = [self.path, "render", str(scene), *VIEW, "--size", size, "--spp", str(spp), "--seed", str(seed), "--quiet",
-                 "--no-learn-light", "--overwrite", "--threads", self.threads, "--exr-pixels", pixels, "-o", str(picture), *more]
+                 "--no-guiding", "--overwrite", "--threads", self.threads, "--exr-pixels", pixels, "-o", str(picture), *more]
         done = subprocess.run(words, capture_output=True, text=True)
         if done.returncode != 0:
             sys.exit(f"{' '.join(words)}\n{done.stderr}")

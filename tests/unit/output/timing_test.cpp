@@ -23,7 +23,7 @@ TimingRow example(std::int32_t frame) {
   row.trace_cpu_ms = 2469;
   row.pixels = 8'294'400;
   row.samples = 18'446'744'073'709'551'615U;
-  row.learning_paths = 65'536;
+  row.training_paths = 65'536;
   row.rays_primary = 3;
   row.rays_bounce = 4;
   row.rays_shadow = 5;
@@ -46,9 +46,9 @@ TEST(Timing, ColumnsNameTheirUnits) {
   EXPECT_THAT(
       timing_columns(),
       testing::ElementsAre(
-          "frame", "plan_ms", "learn_ms", "pilot_ms", "trace_ms", "guides_ms", "reconstruct_ms", "temporal_ms",
+          "frame", "plan_ms", "guiding_ms", "pilot_ms", "trace_ms", "guides_ms", "reconstruct_ms", "temporal_ms",
           "exposure_ms", "layers_ms", "color_ms", "write_ms", "total_ms", "trace_cpu_ms", "pixels", "samples",
-          "pilot_samples", "other_samples", "learning_paths", "rays_primary", "rays_bounce", "rays_shadow",
+          "pilot_samples", "other_samples", "training_paths", "rays_primary", "rays_bounce", "rays_shadow",
           "rejected_rays", "non_finite_samples", "fovea_pixels", "fovea_samples", "fovea_cpu_ms", "intermediate_pixels",
           "intermediate_samples", "intermediate_cpu_ms", "periphery_pixels", "periphery_samples", "periphery_cpu_ms",
           "uniform_pixels", "uniform_samples", "uniform_cpu_ms", "block_1_pixels", "block_1_samples", "block_1_cpu_ms",

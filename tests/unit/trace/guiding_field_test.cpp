@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables of directions learned from paths: densities, their samples, and when a table is worth its time.
-#include "trace/guiding/learned_light.hpp"
+// Tables of directions field from paths: densities, their samples, and when a table is worth its time.
+#include "trace/guiding/guiding_field.hpp"
 
 #include <gtest/gtest.h>
 
@@ -37,10 +37,10 @@ double chi_square_z(const std::vector<double>& seen, const std::vector<double>& 
 
 // Directions above a floor by the cosine, `light` of each, from places in a square of one metre.
 template <class Light>
-std::vector<LearningRecord> records_of_floor(std::uint32_t count, const Light& light, const Vec3f& corner = {}) {
+std::vector<TrainingRecord> records_of_floor(std::uint32_t count, const Light& light, const Vec3f& corner = {}) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
-  std::vector<LearningRecord> records;
+  std::vector<TrainingRecord> records;
   for (std::uint32_t i = 0; i < count; ++i) {
     const float radius = std::sqrt(uniform(random));
     const float angle = uniform(random) * static_cast<float>(2 * kPi);
@@ -75,11 +75,11 @@ TEST(DirectionBins, CoverTheSphereInEqualParts) {
   }
 }
 
-TEST(LearnedLight, TablesAreDensitiesAndSamplesFollowThem) {
-  const LearnedLight learned(records_of_floor(20000, light_of_window), 1);
-  const std::int32_t cell = learned.cell_at({0.5F, 0, 0.5F}, {0, 1, 0});
+TEST(GuidingField, TablesAreDensitiesAndSamplesFollowThem) {
+  const GuidingField field(records_of_floor(20000, light_of_window), 1);
+  const std::int32_t cell = field.cell_at({0.5F, 0, 0.5F}, {0, 1, 0});
   ASSERT_GE(cell, 0);
-  const DirectionTable& table = learned.table(cell);
+  const DirectionTable& table = field.table(cell);
 
   std::mt19937 random(2);
   std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
@@ -120,9 +120,9 @@ TEST(LearnedLight, TablesAreDensitiesAndSamplesFollowThem) {
   EXPECT_LT(chi_square_z(seen, expected), 5);
 }
 
-TEST(LearnedLight, NumbersAtTheirEndsGiveDirections) {
-  const LearnedLight learned(records_of_floor(20000, light_of_window), 1);
-  const DirectionTable& table = learned.table(learned.cell_at({0.5F, 0, 0.5F}, {0, 1, 0}));
+TEST(GuidingField, NumbersAtTheirEndsGiveDirections) {
+  const GuidingField field(records_of_floor(20000, light_of_window), 1);
+  const DirectionTable& table = field.table(field.cell_at({0.5F, 0, 0.5F}, {0, 1, 0}));
   for (const float x : {0.0F, 0x1.fffffep-1F}) {
     for (const float y : {0.0F, 0x1.fffffep-1F}) {
       const DirectionTable::Sample sample = table.sample({x, y});
@@ -137,9 +137,9 @@ TEST(LearnedLight, NumbersAtTheirEndsGiveDirections) {
 }
 
 // The variance that a share would have had, by numerical integration of light^2 / density over the hemisphere.
-TEST(LearnedLight, TheShareIsNearTheBestThereIs) {
-  const LearnedLight learned(records_of_floor(50000, light_of_window), 1);
-  const std::int32_t cell = learned.cell_at({0.5F, 0, 0.5F}, {0, 1, 0});
+TEST(GuidingField, TheShareIsNearTheBestThereIs) {
+  const GuidingField field(records_of_floor(50000, light_of_window), 1);
+  const std::int32_t cell = field.cell_at({0.5F, 0, 0.5F}, {0, 1, 0});
   const auto moment = [&](double share) {
     std::mt19937 random(3);
     double sum = 0;
@@ -149,27 +149,27 @@ TEST(LearnedLight, TheShareIsNearTheBestThereIs) {
       direction.y = std::fabs(direction.y);
       const double light = static_cast<double>(light_of_window(direction) * direction.y);
       const double density = (1 - share) * static_cast<double>(direction.y) / kPi +
-                             share * static_cast<double>(learned.table(cell).pdf(direction));
+                             share * static_cast<double>(field.table(cell).pdf(direction));
       sum += light * light / density;
     }
     return sum * kSphere / 2 / kDirections;
   };
-  EXPECT_TRUE(learned.pays());
-  EXPECT_TRUE(learned.promises());
+  EXPECT_TRUE(field.pays());
+  EXPECT_TRUE(field.promises());
   double best = std::numeric_limits<double>::infinity();
   for (const double share : {0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9}) {
     best = std::min(best, moment(share));
   }
-  EXPECT_LE(moment(static_cast<double>(learned.share(cell))), 1.05 * best);
+  EXPECT_LE(moment(static_cast<double>(field.share(cell))), 1.05 * best);
   EXPECT_LT(best, 0.5 * moment(0));
 }
 
 // Paths that follow what earlier ones have found bring directions of another density than the BSDF's.
 template <class Light>
-std::vector<LearningRecord> records_of_guided_paths(const Light& light) {
-  std::vector<LearningRecord> records = records_of_floor(50000, light);
+std::vector<TrainingRecord> records_of_guided_paths(const Light& light) {
+  std::vector<TrainingRecord> records = records_of_floor(50000, light);
   std::mt19937 random(9);
-  for (LearningRecord& record : records) {
+  for (TrainingRecord& record : records) {
     if (random() % 8 != 0) {  // evenly over the quarter sphere on one side
       record.direction = random_direction(random);
       record.direction.x = -std::fabs(record.direction.x);
@@ -183,67 +183,67 @@ std::vector<LearningRecord> records_of_guided_paths(const Light& light) {
 }
 
 // A table goes by light times cosine, so that the side with twice the light has two thirds of it.
-TEST(LearnedLight, GuidedPathsTeachWhatOthersTeach) {
+TEST(GuidingField, GuidedPathsTeachWhatOthersTeach) {
   const auto light = [](const Vec3f& direction) { return direction.x > 0 ? 2.0F : 1.0F; };
-  for (const std::vector<LearningRecord>& records : {records_of_floor(50000, light), records_of_guided_paths(light)}) {
-    const LearnedLight learned(records, 1);
-    const std::int32_t floor = learned.cell_at({0.5F, 0, 0.5F}, {0, 1, 0});
+  for (const std::vector<TrainingRecord>& records : {records_of_floor(50000, light), records_of_guided_paths(light)}) {
+    const GuidingField field(records, 1);
+    const std::int32_t floor = field.cell_at({0.5F, 0, 0.5F}, {0, 1, 0});
     double bright_side = 0;
     for (std::size_t bin = 0; bin < kDirectionBins; ++bin) {
       const Vec3f direction = direction_in({bin / kSectors, bin % kSectors}, {0.5F, 0.5F});
-      bright_side += direction.x > 0 ? static_cast<double>(learned.table(floor).pdf(direction)) : 0.0;
+      bright_side += direction.x > 0 ? static_cast<double>(field.table(floor).pdf(direction)) : 0.0;
     }
     EXPECT_NEAR(bright_side * kSphere / kDirectionBins, 2.0 / 3, 0.03);
   }
 }
 
 // The table is better than what these paths followed, and no better than the BSDF.
-TEST(LearnedLight, ATableIsJudgedBesideTheBsdf) {
-  const LearnedLight learned(records_of_guided_paths([](const Vec3f&) { return 1.0F; }), 1);
-  EXPECT_FALSE(learned.pays());
-  EXPECT_FALSE(learned.promises());
+TEST(GuidingField, ATableIsJudgedBesideTheBsdf) {
+  const GuidingField field(records_of_guided_paths([](const Vec3f&) { return 1.0F; }), 1);
+  EXPECT_FALSE(field.pays());
+  EXPECT_FALSE(field.promises());
 }
 
-TEST(LearnedLight, EvenLightIsNotWorthATable) {
-  const LearnedLight learned(records_of_floor(50000, [](const Vec3f&) { return 1.0F; }), 1);
-  EXPECT_FALSE(learned.pays());
-  EXPECT_FALSE(learned.promises());
+TEST(GuidingField, EvenLightIsNotWorthATable) {
+  const GuidingField field(records_of_floor(50000, [](const Vec3f&) { return 1.0F; }), 1);
+  EXPECT_FALSE(field.pays());
+  EXPECT_FALSE(field.promises());
 }
 
 // Two rooms with windows on opposite sides, and ceilings above the same floor.
-TEST(LearnedLight, PlacesAndFacingsLearnByThemselves) {
-  std::vector<LearningRecord> records = records_of_floor(20000, light_of_window);
+TEST(GuidingField, PlacesAndFacingsHaveTablesOfTheirOwn) {
+  std::vector<TrainingRecord> records = records_of_floor(20000, light_of_window);
   const auto mirrored = [](const Vec3f& direction) {
     return light_of_window({-direction.x, direction.y, direction.z});
   };
-  for (const LearningRecord& record : records_of_floor(20000, mirrored, {20, 0, 0})) {
+  for (const TrainingRecord& record : records_of_floor(20000, mirrored, {20, 0, 0})) {
     records.push_back(record);
   }
-  const LearnedLight learned(records, 1);
+  const GuidingField field(records, 1);
   const auto pdf = [&](const Vec3f& place, const Vec3f& direction) {
-    return learned.table(learned.cell_at(place, {0, 1, 0})).pdf(direction);
+    return field.table(field.cell_at(place, {0, 1, 0})).pdf(direction);
   };
   const Vec3f right{0.8F, 0.6F, 0};
   const Vec3f left{-0.8F, 0.6F, 0};
   EXPECT_GT(pdf({0.5F, 0, 0.5F}, right), 3 * pdf({0.5F, 0, 0.5F}, left));
   EXPECT_GT(pdf({20.5F, 0, 0.5F}, left), 3 * pdf({20.5F, 0, 0.5F}, right));
-  EXPECT_LT(learned.cell_at({0.5F, 0, 0.5F}, {0, -1, 0}), 0) << "no path left a ceiling";
+  EXPECT_LT(field.cell_at({0.5F, 0, 0.5F}, {0, -1, 0}), 0) << "no path left a ceiling";
   // Outside of all that was seen, the nearest place answers.
-  EXPECT_EQ(learned.cell_at({-100, -100, -100}, {0, 1, 0}), learned.cell_at({0, 0, 0}, {0, 1, 0}));
-  EXPECT_GE(learned.cell_at({std::numeric_limits<float>::quiet_NaN(), 0, 0}, {0, 1, 0}), -1);
-  EXPECT_GT(learned.bytes(), 0U);
+  EXPECT_EQ(field.cell_at({-100, -100, -100}, {0, 1, 0}), field.cell_at({0, 0, 0}, {0, 1, 0}));
+  EXPECT_GE(field.cell_at({std::numeric_limits<float>::quiet_NaN(), 0, 0}, {0, 1, 0}), -1);
+  EXPECT_GT(field.bytes(), 0U);
 }
 
-TEST(LearnedLight, NothingAndBadRecords) {
-  EXPECT_FALSE(LearnedLight().pays());
-  EXPECT_FALSE(LearnedLight({}, 1).pays());
-  EXPECT_LT(LearnedLight({}, 1).cell_at({0, 0, 0}, {0, 1, 0}), 0);
-  EXPECT_LT(LearnedLight().cell_at({0, 0, 0}, {0, 1, 0}), 0);
+TEST(GuidingField, NothingAndBadRecords) {
+  EXPECT_FALSE(GuidingField().pays());
+  EXPECT_FALSE(GuidingField({}, 1).pays());
+  EXPECT_LT(GuidingField({}, 1).cell_at({0, 0, 0}, {0, 1, 0}), 0);
+  EXPECT_LT(GuidingField().cell_at({0, 0, 0}, {0, 1, 0}), 0);
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  const std::vector<LearningRecord> good = records_of_floor(5000, light_of_window);
-  std::vector<LearningRecord> records = good;
+  const std::vector<TrainingRecord> good = records_of_floor(5000, light_of_window);
+  std::vector<TrainingRecord> records = good;
   for (const float bad : {kInfinity, -kInfinity, std::numeric_limits<float>::quiet_NaN(), -1.0F}) {
-    LearningRecord record = good.front();
+    TrainingRecord record = good.front();
     record.radiance = bad;
     records.push_back(record);
     record = good.front();
@@ -257,25 +257,25 @@ TEST(LearnedLight, NothingAndBadRecords) {
   records.back().pdf = 0;
   records.push_back(good.front());
   records.back().bsdf_pdf = 0;
-  const LearnedLight learned(records, 1);
-  const LearnedLight expected(good, 1);
-  ASSERT_EQ(learned.cell_count(), expected.cell_count());
-  for (std::int32_t cell = 0; cell < static_cast<std::int32_t>(learned.cell_count()); ++cell) {
-    EXPECT_EQ(learned.table(cell).sector, expected.table(cell).sector);
-    EXPECT_EQ(learned.share(cell), expected.share(cell));
+  const GuidingField field(records, 1);
+  const GuidingField expected(good, 1);
+  ASSERT_EQ(field.cell_count(), expected.cell_count());
+  for (std::int32_t cell = 0; cell < static_cast<std::int32_t>(field.cell_count()); ++cell) {
+    EXPECT_EQ(field.table(cell).sector, expected.table(cell).sector);
+    EXPECT_EQ(field.share(cell), expected.share(cell));
   }
   // One bright path in a thousand dark ones draws all to itself nowhere.
   records = records_of_floor(1000, [](const Vec3f&) { return 1.0F; });
   records[17].radiance = 1e30F;
-  const LearnedLight firefly(records, 1);
+  const GuidingField firefly(records, 1);
   const std::int32_t cell = firefly.cell_at({0.5F, 0, 0.5F}, {0, 1, 0});
   ASSERT_GE(cell, 0);
   EXPECT_GT(firefly.table(cell).pdf({-records[17].direction.x, records[17].direction.y, -records[17].direction.z}),
             0.01F);
 }
 
-TEST(LearnedLight, ThreadsMakeNoDifference) {
-  std::vector<LearningRecord> records;
+TEST(GuidingField, ThreadsMakeNoDifference) {
+  std::vector<TrainingRecord> records;
   std::mt19937 random(5);
   for (std::uint32_t i = 0; i < 40000; ++i) {
     const Vec3f direction = random_direction(random);
@@ -283,8 +283,8 @@ TEST(LearnedLight, ThreadsMakeNoDifference) {
     normal = dot(normal, direction) < 0 ? normal * -1.0F : normal;
     records.push_back({random_direction(random), normal, direction, 0.1F, 0.1F, light_of_window(direction), i});
   }
-  const LearnedLight one(records, 1);
-  const LearnedLight four(records, 4);
+  const GuidingField one(records, 1);
+  const GuidingField four(records, 4);
   ASSERT_EQ(one.cell_count(), four.cell_count());
   EXPECT_GT(one.cell_count(), 30U);
   for (std::int32_t cell = 0; cell < static_cast<std::int32_t>(one.cell_count()); ++cell) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Learned light: frames that learn from paths of their own have the same bits alone, in parts and with any threads."""
+"""Learned light: frames that trains from paths of their own have the same bits alone, in parts and with any threads."""
 
 import csv
 import json
@@ -23,13 +23,13 @@ JOB = ["hall.gltf", "--size", "240x160", "--fps", "24", "--quiet", "--exposure",
 GAZE = ["--gaze-at", "0.4,0.5", "--screen-px", "240,160", "--screen-ppd", "8"]
 
 
-class LearnedLight(harness.CliTest):
+class GuidingField(harness.CliTest):
     def setUp(self):
         super().setUp()
         self.write("hall.gltf", json.dumps(hall_gltf()))
 
-    def render(self, folder, *more, frames="1-3", learning=()):
-        self.run_ok("render", *JOB, "--frames", frames, *learning, *more, "-o", f"{folder}/f.####.exr")
+    def render(self, folder, *more, frames="1-3", training=()):
+        self.run_ok("render", *JOB, "--frames", frames, *training, *more, "-o", f"{folder}/f.####.exr")
         return self.pictures(folder)
 
     def rows(self, folder):
@@ -51,14 +51,14 @@ class LearnedLight(harness.CliTest):
 
     def test_it_changes_pictures_and_is_counted(self):
         raw = ["--sampling", "uniform", "--spp", "2", "--filter", "none", "--accumulate", "off"]
-        learned = self.render("learned", *raw)
-        plain = self.render("plain", *raw, learning=("--no-learn-light",))
-        self.assertTrue(all(learned[key] != plain[key] for key in plain))
-        for row in self.rows("learned"):
-            self.assertGreater(int(row["learning_paths"]), 4096 + 500)
+        guided = self.render("guided", *raw)
+        plain = self.render("plain", *raw, training=("--no-guiding",))
+        self.assertTrue(all(guided[key] != plain[key] for key in plain))
+        for row in self.rows("guided"):
+            self.assertGreater(int(row["training_paths"]), 4096 + 500)
             self.assertEqual(int(row["samples"]), 2 * 240 * 160)  # what is discarded is no sample
-            self.assertGreater(float(row["learn_ms"]), 0)
-        self.assertEqual({row["learning_paths"] for row in self.rows("plain")}, {"0"})
+            self.assertGreater(float(row["guiding_ms"]), 0)
+        self.assertEqual({row["training_paths"] for row in self.rows("plain")}, {"0"})
 
 
 if __name__ == "__main__":

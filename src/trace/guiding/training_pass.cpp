@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/guiding/learning_pass.hpp"
+#include "trace/guiding/training_pass.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr std::uint64_t kLearningTag = 0x6c6561726e696e67ULL;
+constexpr std::uint64_t kTrainingTag = 0x6c6561726e696e67ULL;
 
 // Cells of about square shape, one path each.
 struct Grid {
@@ -55,7 +55,7 @@ void fill(std::uint64_t first, int count, const Grid& grid, std::uint64_t seed, 
   }
 }
 
-void keep(const Workspace& work, std::uint64_t first, std::vector<LearningRecord>& out) {
+void keep(const Workspace& work, std::uint64_t first, std::vector<TrainingRecord>& out) {
   for (const BounceFound& bounce : work.bounces) {
     const std::size_t slot = bounce.slot;
     const float end = luminance(Vec3f{work.radiance.r[slot], work.radiance.g[slot], work.radiance.b[slot]});
@@ -63,7 +63,7 @@ void keep(const Workspace& work, std::uint64_t first, std::vector<LearningRecord
     if (work.radiance.rejected[slot] != 0 || !(bounce.throughput > 0) || !std::isfinite(found)) {
       continue;
     }
-    LearningRecord record = bounce.record;
+    TrainingRecord record = bounce.record;
     record.radiance = std::max(0.0F, found) / bounce.throughput;
     record.path = static_cast<std::uint32_t>(first + slot);
     if (std::isfinite(record.radiance)) {
@@ -72,10 +72,10 @@ void keep(const Workspace& work, std::uint64_t first, std::vector<LearningRecord
   }
 }
 
-// The learning paths of a frame.
-class LearningPaths {
+// The training paths of a frame.
+class TrainingPaths {
  public:
-  LearningPaths(FrameContext context, Kernel kernel, int width_px, int height_px, int threads)
+  TrainingPaths(FrameContext context, Kernel kernel, int width_px, int height_px, int threads)
       : context_(std::move(context)), kernel_(kernel), width_px_(width_px), height_px_(height_px), threads_(threads) {
     context_.records_bounces = true;
     context_.settings.guides = context_.settings.surfaces = context_.settings.light_groups = false;
@@ -83,14 +83,14 @@ class LearningPaths {
   }
 
   // About so many more of them, spread evenly. `round` chooses their scrambling, and `so_far` is what they follow.
-  void trace(double about, std::uint64_t round, const LearnedLight& so_far) {
-    context_.learned = so_far.pays() ? &so_far : nullptr;
-    const std::uint64_t seed = hash_combine(hash_combine(context_.settings.seed, kLearningTag), round);
+  void trace(double about, std::uint64_t round, const GuidingField& so_far) {
+    context_.guiding_field = so_far.pays() ? &so_far : nullptr;
+    const std::uint64_t seed = hash_combine(hash_combine(context_.settings.seed, kTrainingTag), round);
     const Grid grid = grid_of(about, width_px_, height_px_);
     const std::uint64_t paths = grid.columns * grid.rows;
     const std::uint64_t batches = (paths + kBatchSize - 1) / kBatchSize;
     const auto ranges = static_cast<std::size_t>(std::min<std::uint64_t>(batches, kMostRanges));
-    std::vector<std::vector<LearningRecord>> found(ranges);
+    std::vector<std::vector<TrainingRecord>> found(ranges);
     parallel_for(ranges, threads_, [&](std::size_t range) {
       const FlushDenormals flush;
       const auto work = std::make_unique<Workspace>();
@@ -115,7 +115,7 @@ class LearningPaths {
     paths_ += paths;
   }
 
-  [[nodiscard]] LearnedLight learned() const { return {records_, threads_}; }
+  [[nodiscard]] GuidingField field() const { return {records_, threads_}; }
   [[nodiscard]] std::uint64_t paths() const { return paths_; }
 
  private:
@@ -124,23 +124,23 @@ class LearningPaths {
   FrameContext context_;
   Kernel kernel_;
   int width_px_, height_px_, threads_;
-  std::vector<LearningRecord> records_;
+  std::vector<TrainingRecord> records_;
   std::uint64_t paths_ = 0;
 };
 
 }  // namespace
 
-LightLearning learn_light(const FrameContext& context, Kernel kernel, int width_px, int height_px, int threads) {
-  const double paths = std::min(kMostLearningPaths, static_cast<double>(width_px) * height_px / kPixelsPerLearningPath);
+TrainedGuiding train_guiding(const FrameContext& context, Kernel kernel, int width_px, int height_px, int threads) {
+  const double paths = std::min(kMostTrainingPaths, static_cast<double>(width_px) * height_px / kPixelsPerTrainingPath);
   const double glimpse = std::min(kGlimpsePaths, paths);
-  LearningPaths learning(context, kernel, width_px, height_px, threads);
-  learning.trace(glimpse, 0, {});
-  LearnedLight learned = learning.learned();
-  if (paths > glimpse && learned.promises()) {
-    learning.trace(paths - glimpse, 1, learned);
-    learned = learning.learned();
+  TrainingPaths training(context, kernel, width_px, height_px, threads);
+  training.trace(glimpse, 0, {});
+  GuidingField field = training.field();
+  if (paths > glimpse && field.promises()) {
+    training.trace(paths - glimpse, 1, field);
+    field = training.field();
   }
-  return {learned.pays() ? std::make_shared<const LearnedLight>(std::move(learned)) : nullptr, learning.paths()};
+  return {field.pays() ? std::make_shared<const GuidingField>(std::move(field)) : nullptr, training.paths()};
 }
 
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/guiding/learned_light.hpp"
+#include "trace/guiding/guiding_field.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -108,7 +108,7 @@ float DirectionTable::pdf(const Vec3f& direction) const noexcept {
          (static_cast<float>(kDirectionBins) / kSphere);
 }
 
-struct LearnedLight::Branch {
+struct GuidingField::Branch {
   std::vector<Children> nodes;
   std::vector<DirectionTable> tables;
   std::vector<float> shares;
@@ -117,7 +117,7 @@ struct LearnedLight::Branch {
 
 // Makes the cells of one facing from its entries, which are in the order of their keys: those of a cell follow each
 // other.
-class LearnedLight::BranchBuilder {
+class GuidingField::BranchBuilder {
  public:
   Branch build(std::span<const Entry> entries) {
     Larger even;
@@ -141,7 +141,7 @@ class LearnedLight::BranchBuilder {
     }
     const auto index = static_cast<std::int32_t>(branch_.nodes.size());
     branch_.nodes.emplace_back().fill(-1);
-    const Larger own = learn(entries, larger);
+    const Larger own = train(entries, larger);
     branch_.tables.push_back(table_of(own.distribution[2]));
     const auto best = std::min_element(own.left.begin(), own.left.end());
     const bool pays = *best < 1 - kLeastGain;
@@ -163,7 +163,7 @@ class LearnedLight::BranchBuilder {
     return index;
   }
 
-  Larger learn(std::span<const Entry> entries, const Larger& larger) {
+  Larger train(std::span<const Entry> entries, const Larger& larger) {
     std::array<Bins, 3> squares{};
     std::array<double, 3> count{};
     for (const Entry& entry : entries) {
@@ -199,7 +199,7 @@ class LearnedLight::BranchBuilder {
   Branch branch_;
 };
 
-LearnedLight::Place LearnedLight::place_of(const Vec3f& position) const noexcept {
+GuidingField::Place GuidingField::place_of(const Vec3f& position) const noexcept {
   constexpr float kMost = static_cast<float>((1U << kDepth) - 1U);
   const auto step = [&](float x, float origin) {
     const float at = (x - origin) * steps_per_m_;
@@ -208,17 +208,17 @@ LearnedLight::Place LearnedLight::place_of(const Vec3f& position) const noexcept
   return {{step(position.x, origin_.x), step(position.y, origin_.y), step(position.z, origin_.z)}};
 }
 
-std::size_t LearnedLight::facing_of(const Vec3f& normal) noexcept {
+std::size_t GuidingField::facing_of(const Vec3f& normal) noexcept {
   const auto third = [](float x) { return static_cast<std::size_t>(x > 0.5F ? 2 : (x < -0.5F ? 0 : 1)); };
   return (third(normal.x) * 3 + third(normal.y)) * 3 + third(normal.z);
 }
 
-LearnedLight::LearnedLight(const std::vector<LearningRecord>& records, int threads) {
+GuidingField::GuidingField(const std::vector<TrainingRecord>& records, int threads) {
   roots_.fill(-1);
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   Vec3f low{kInfinity, kInfinity, kInfinity};
   Vec3f high{-kInfinity, -kInfinity, -kInfinity};
-  for (const LearningRecord& record : records) {
+  for (const TrainingRecord& record : records) {
     const Vec3f& p = record.position;
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
@@ -233,7 +233,7 @@ LearnedLight::LearnedLight(const std::vector<LearningRecord>& records, int threa
   std::vector<Entry> entries;
   entries.reserve(records.size());
   for (std::size_t i = 0; i < records.size(); ++i) {
-    const LearningRecord& record = records[i];
+    const TrainingRecord& record = records[i];
     const float light = record.radiance * std::max(0.0F, dot(record.normal, record.direction));
     if (!(record.pdf > 0) || !std::isfinite(record.pdf) || !(record.bsdf_pdf > 0) || !std::isfinite(record.bsdf_pdf) ||
         !(light >= 0) || !std::isfinite(light)) {
@@ -281,7 +281,7 @@ LearnedLight::LearnedLight(const std::vector<LearningRecord>& records, int threa
   pays_ = std::any_of(shares_.begin(), shares_.end(), [](float share) { return share > 0; });
 }
 
-std::int32_t LearnedLight::cell_at(const Vec3f& position, const Vec3f& normal) const noexcept {
+std::int32_t GuidingField::cell_at(const Vec3f& position, const Vec3f& normal) const noexcept {
   const Place place = place_of(position);
   std::int32_t cell = roots_[facing_of(normal)];
   if (cell < 0) {
@@ -299,7 +299,7 @@ std::int32_t LearnedLight::cell_at(const Vec3f& position, const Vec3f& normal) c
   return cell;
 }
 
-std::size_t LearnedLight::bytes() const noexcept {
+std::size_t GuidingField::bytes() const noexcept {
   return nodes_.size() * (sizeof(Children) + sizeof(DirectionTable) + sizeof(float));
 }
 

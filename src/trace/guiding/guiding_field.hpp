@@ -6,7 +6,7 @@
 // A cell is a cube of space for surfaces that face about one way. Its table is a density over the sphere: the root of
 // the second moment of what arrives, times the cosine (Rath et al., "Variance-Aware Path Guiding", 2020). A cell that
 // has seen few paths is drawn towards the larger cell that it is in, and the largest one towards even light. Means stay
-// unbiased whatever was learned, since the BSDF always keeps at least a tenth of the choice.
+// unbiased whatever was found, since the BSDF always keeps at least a tenth of the choice.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 namespace gazetrace {
 
 // What a path found along one of its bounces.
-struct LearningRecord {
+struct TrainingRecord {
   Vec3f position, normal;  // of the surface that it left; the normal is the shading normal
   Vec3f direction;         // of unit length
   float pdf = 0;           // with which the direction was drawn, over solid angle
@@ -42,12 +42,12 @@ struct alignas(64) DirectionTable {
   [[nodiscard]] float pdf(const Vec3f& direction) const noexcept;
 };
 
-class LearnedLight {
+class GuidingField {
  public:
-  // Nothing was learned: cell_at() finds nothing.
-  LearnedLight() { roots_.fill(-1); }
+  // Untrained: cell_at() finds nothing.
+  GuidingField() { roots_.fill(-1); }
   // The result does not depend on the number of threads. Records that carry no finite light are passed over.
-  LearnedLight(const std::vector<LearningRecord>& records, int threads);
+  GuidingField(const std::vector<TrainingRecord>& records, int threads);
 
   // The smallest cell for a place and a normal, or a negative number.
   [[nodiscard]] std::int32_t cell_at(const Vec3f& position, const Vec3f& normal) const noexcept;
