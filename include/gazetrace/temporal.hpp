@@ -18,6 +18,14 @@ struct AccumulateSettings {
   AccumulateMode mode = AccumulateMode::off;
   // So many frames before a frame and after it are read, as far as they exist.
   std::int32_t past_frames = 0, future_frames = 0;
+
+  // The number that stands for a frame in its random numbers. The frames of a window all differ. Frames as far apart as
+  // a window is long, which no window holds together, have the same: where camera and scene are at rest, every window
+  // then holds the same samples, and nothing flickers.
+  [[nodiscard]] constexpr std::int32_t scrambling(std::int32_t frame) const {
+    const std::int32_t length = 1 + past_frames + future_frames;
+    return mode == AccumulateMode::window && length > 1 ? (frame % length + length) % length : frame;
+  }
 };
 
 }  // namespace gazetrace

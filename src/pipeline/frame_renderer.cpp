@@ -70,6 +70,7 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request, TrainedField& know
         timed(times.guiding_ms, [&] { return guiding_field(scene, request, known, traced.pilot); });
   }
   MapContext context = map_context(request, settings_.trace.seed, settings_.threads);
+  context.frame = settings_.accumulate.scrambling(request.frame);
   FoveationSettings foveation = settings_.foveation;
   ImageGray density;
   if (settings_.rates_of) {
@@ -98,7 +99,10 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request, TrainedField& know
   settings.light_groups = settings_.layers.light;
   settings.surfaces = settings.surfaces || settings_.accumulate.mode == AccumulateMode::window;
   traced.sparse =
-      timed(times.trace_ms, [&] { return scene.trace(request.camera, request.frame, traced.map, settings); });
+      timed(times.trace_ms, [&] { return scene.trace(request.camera, context.frame, traced.map, settings); });
+  for (BadSample& bad : traced.sparse.stats.bad_samples) {
+    bad.frame = request.frame;
+  }
   return traced;
 }
 
@@ -138,8 +142,10 @@ RenderedFrame FrameRenderer::finish(const std::vector<const WindowFrame*>& windo
   if (settings_.accumulate.mode != AccumulateMode::window) {
     return finish(request, frame.traced);  // traced without the surfaces by which frames join
   }
-  const auto samples_of = [](const WindowFrame& one) {
-    return WindowSamples{one.request.frame, &one.request.camera, &one.traced.map, &one.traced.sparse, &one.glossy};
+  const auto samples_of = [this](const WindowFrame& one) {
+    const std::int32_t scrambling = settings_.accumulate.scrambling(one.request.frame);
+    return WindowSamples{one.request.frame, scrambling,         &one.request.camera,
+                         &one.traced.map,   &one.traced.sparse, &one.glossy};
   };
   TracedFrame itself;
   itself.map = frame.traced.map;

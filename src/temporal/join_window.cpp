@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -262,21 +263,29 @@ JoinedSamples WindowJoin::joined() const {
   out.first_surface.resize(first.first_surface.size());
   out.first_hits.resize(first.first_hits.size());
   const CameraRays rays(*own_.camera, own_map.height_px);
+  // Sums are rounded by their order: windows at rest, which hold the same samples, add them in the same order.
+  std::vector<std::size_t> order(added_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return added_[a].samples.scrambling < added_[b].samples.scrambling;
+  });
   std::vector<std::vector<SurfaceSums>> surfaces(parts);
   parallel_for(parts, threads_, [&](std::size_t p) {
     const Part part = part_of(p, own, light);
     SiteAdder adder(rays, all.map, out);
     std::vector<JoiningFrame> frames;
-    for (const Added& added : added_) {
+    for (const std::size_t place : order) {
+      const Added& added = added_[place];
       frames.push_back(
-          {added.samples.frame, added.samples.map, added.samples.sparse, added.camera_m, added.moved_m, {}});
+          {added.samples.scrambling, added.samples.map, added.samples.sparse, added.camera_m, added.moved_m, {}});
     }
-    std::size_t list = 0;
+    std::size_t batch = 0;
     for (std::size_t site = part.begin; site < part.end; site += SiteAdder::kBatchSites) {
-      for (JoiningFrame& frame : frames) {
-        frame.joining = std::span(part.joining).subspan(part.first[list], part.first[list + 1] - part.first[list]);
-        ++list;
+      for (std::size_t k = 0; k < frames.size(); ++k) {
+        const std::size_t list = batch + order[k];
+        frames[k].joining = std::span(part.joining).subspan(part.first[list], part.first[list + 1] - part.first[list]);
       }
+      batch += frames.size();
       adder.add(site, std::min(SiteAdder::kBatchSites, part.end - site), frames, surfaces[p]);
     }
   });

@@ -19,6 +19,7 @@ namespace gazetrace {
 // What a frame has sampled, and from where.
 struct WindowSamples {
   std::int32_t frame = 1;
+  std::int32_t scrambling = 1;  // AccumulateSettings::scrambling()
   const Camera* camera = nullptr;
   const SamplingMap* map = nullptr;
   const SparseFrame* sparse = nullptr;                // with surfaces
@@ -48,7 +49,7 @@ struct JoinedSamples {
 //
 // What nothing joins keeps its bits. Where camera and scene are at rest and the sites the same, the sums are those of
 // all frames, with the same bits for each of them. What SparseFrame states of two halves of a site's samples is stated
-// of the frames with odd and with even numbers, where there are both: each has a scrambling of its own.
+// of the frames with odd and with even scramblings, where there are both.
 class WindowJoin {
  public:
   // `places`: what the frame's pixels see, in its own view. Keeps references to what `own` names.

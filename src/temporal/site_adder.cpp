@@ -10,7 +10,7 @@ namespace gazetrace {
 namespace {
 
 std::uint8_t half_of(const JoiningFrame& frame) {
-  return static_cast<std::uint8_t>(frame.frame & 1);
+  return static_cast<std::uint8_t>(frame.scrambling & 1);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct Joining {
 
 // One of the frames, and what of it joins a batch.
 struct JoiningFrame {
-  std::int32_t frame = 1;
+  std::int32_t scrambling = 1;
   const SamplingMap* map = nullptr;
   const SparseFrame* sparse = nullptr;
   Vec3f camera_m;                  // from the frame's camera to the one of this frame
@@ -39,8 +39,8 @@ class SiteAdder {
   // `map` and `out` have an entry for each of the frame's sites; `out` has its guides already.
   SiteAdder(const CameraRays& rays, SamplingMap& map, SparseFrame& out);
 
-  // Of `count` sites from `first` on. The frames are in ascending order; each site is joined by itself at least.
-  // Appends the sites' surfaces to `surfaces`.
+  // Of `count` sites from `first` on. The frames are in the order in which they are added up; each site is joined by
+  // itself at least. Appends the sites' surfaces to `surfaces`.
   void add(std::size_t first, std::size_t count, std::span<const JoiningFrame> frames,
            std::vector<SurfaceSums>& surfaces);
 
@@ -54,7 +54,7 @@ class SiteAdder {
     const SparseFrame* last = nullptr;  // of the last site that joins, and that site
     std::uint32_t last_site = 0;
 
-    // Whether halves are those of the frames with odd and with even numbers; else those within each frame.
+    // Whether halves are those of the frames with odd and with even scramblings; else those within each frame.
     [[nodiscard]] bool by_frames() const { return count[0] > 0 && count[1] > 0; }
   };
   struct GuideDoubles {

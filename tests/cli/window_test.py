@@ -60,6 +60,13 @@ class Window(harness.CliTest):
         self.assertEqual(self.render("one-thread", "--frames", "4", "--threads", "1")["f.0004.png"],
                          whole["f.0004.png"])
 
+    def test_nothing_flickers_at_rest(self):
+        self.run_ok("render", "box.gltf", "--size", "64x36", "--fps", "24", "--frames", "1-8", "--sampling", "uniform", "--spp", "2",
+                    "--accumulate", "window", "--accumulate-past", "50ms", "--accumulate-future", "50ms", "--filter", "guided",
+                    "--quiet", "-o", "rest/f.####.png")
+        frames = [png_pixels(self.folder / f"rest/f.{frame:04d}.png") for frame in range(3, 8)]  # whose windows are whole
+        self.assertEqual(len(set(frames)), 1)
+
     def test_parts_merge_and_a_run_resumes(self):
         whole = self.render("whole", "--frames", "1-6")
         self.render("parts", "--frames", "1-3", "--chunk", "1/1")
