@@ -18,7 +18,7 @@ stands for itself. A margin around each belongs to what FovVideoVDP sees and has
 (`compare --pooling-weights`). Outside of the windows test and reference show the same picture. `--whole` traces and scores
 whole frames instead, to see what the windows change.
 
-References and raw samples are traced without learned light. Raw samples are rendered once, at 64 samples a pixel, a fresh pattern for each frame. Their score at N samples is that of a
+References and raw samples are traced without path guiding. Raw samples are rendered once, at 64 samples a pixel, a fresh pattern for each frame. Their score at N samples is that of a
 clip whose differences from the reference are divided by the root of N / 64; the line `scaling` shows how well that holds, by a
 clip that was rendered at 16. Rare light is cut off by the display less the more samples there are, and samples of a sequence are
 better than independent ones, so that raw samples are a little better than they are scaled to be.

@@ -17,7 +17,7 @@ Every program renders the same glTF, camera, light, bounces and samples. In one 
   (common)    the same ratio of us * common
   furnace     radiance inside a closed box of albedo 1/2 that shines 1: 1 + 1/2 + ... + 2^-bounces if paths are equally long
 
-`gazetrace-plain` is gazetrace with --no-guiding. What learned light gains depends on the size of the frame: measure
+`gazetrace-plain` is gazetrace with --no-guiding. What path guiding gains depends on the size of the frame: measure
 errors at the size of the timed pictures.
 
 With --rates 1,4,16,64 a table for each rate instead: `us` is the time per sample of a picture of so many samples a pixel,
