@@ -189,7 +189,7 @@ def _over_time(results, test, metric, with_pdf):
     with drawing.figure(4.6, 4.4, nrows=2, sharex=True) as (fig, (above, below)):
         fig.get_layout_engine().set(hspace=0.14)  # where the colors of the eye's strip are named
         above.set_title(f"{words.place(*test.place)}: {test.short}")
-        for axes, key, label in ((above, "time_s", "time of a frame [s]"), (below, metric.name, f"{metric.words}, {metric.better}")):
+        for axes, key, label in ((above, "time_s", "time of a frame [s]"), (below, metric.name, f"{metric.words},\n{metric.better}")):  # one above the other in half the height
             known = table[key].dropna()
             if len(known):
                 _limits(axes.yaxis, list(known), key == "time_s")

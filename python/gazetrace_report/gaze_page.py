@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page on a recording: one file that loads nothing."""
 
+import html
+import re
+
 import pandas
 
 from . import drawing, tables, words
@@ -44,6 +47,11 @@ def events(numbers):
     return tables.table(frame, f"Events by {numbers['method']}") if rows else "<p>No event was found.</p>\n"
 
 
+def with_options(text):
+    """A warning as markup: options, which no line may break."""
+    return re.sub(r"(?<!\S)--[a-z][a-z-]*", r"<code>\g<0></code>", html.escape(text.replace("`", "")))
+
+
 def make(numbers, diagrams):
     name = numbers["source"] + (f", trial {numbers['trial']}" if numbers.get("trial") else "")
     trials = len(numbers["trials"]) if len(numbers["trials"]) > 1 else 0
@@ -55,5 +63,5 @@ def make(numbers, diagrams):
     q = numbers["quality"][0]
     facts = f"{q['samples']} samples in {words.number(q['duration_s'], 5)} s, {numbers['events']['fixation']['count']} fixations, data loss {loss(q)}"
     return templates().get_template("gaze.html").render(
-        title=f"Gaze: {name}", facts=facts, warnings=[text.replace("`", "") for text in warnings], quality=quality(numbers), events=events(numbers), figures=figures,
+        title=f"Gaze: {name}", facts=facts, warnings=[with_options(text) for text in warnings], quality=quality(numbers), events=events(numbers), figures=figures,
         trials=trials, most_trials=MOST_TRIALS, method=numbers["method_words"].replace("`", ""), program=numbers["program"])

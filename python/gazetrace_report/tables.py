@@ -125,12 +125,29 @@ def fixed_quality(results):
 
 
 def controls(results):
-    rows = [(words.place(control.get("scene", ""), control.get("gaze", "")), results.metric_words.get(control["metric"], control["metric"]), control.get("wrong") or "", words.number(control.get("right_score")),
+    rows = [(words.place(control.get("scene", ""), control.get("gaze", "")), _name_of(results, control.get("of")), results.metric_words.get(control["metric"], control["metric"]), control.get("wrong") or "", words.number(control.get("right_score")),
              words.number(control.get("wrong_score")), {"sensitive": "yes", "insensitive": "no: insensitive here", "undecided": "undecided"}[results.control_verdict(control)],
              control.get("why") or "") for control in results.raw.get("controls") or []]
-    columns = ["scene and gaze", "metric", "gaze", "right", "wrong", "does the metric notice", "why"]
+    columns = ["scene and gaze", "foveated run", "metric", "gaze", "right", "wrong", "does the metric notice", "why"]
     caption = "The same settings rendered with a wrong gaze and scored with the right one"
-    return folded(pandas.DataFrame(rows, columns=columns), caption) if rows else ""
+    if not rows:
+        return ""
+    frame = _without_the_only(_without_the_only(pandas.DataFrame(rows, columns=columns), "scene and gaze"), "foveated run")
+    reasons = [why for why in dict.fromkeys(frame["why"]) if why]
+    if len(reasons) > 1:
+        return folded(frame, caption)
+    # What is the same for all is said once.
+    said = f'<p class="small">Where it does not notice: {html.escape(reasons[0])}.</p>\n' if reasons else ""
+    return folded(frame.drop(columns="why"), caption) + said
+
+
+def _name_of(results, row):
+    return results.by_id[row].name if row in results.by_id else ""
+
+
+def _without_the_only(frame, column):
+    """Without a column that says the same in each row."""
+    return frame.drop(columns=column) if frame[column].nunique() == 1 else frame
 
 
 def tally(compared):
@@ -146,9 +163,7 @@ def losses(compared):
     frame = findings.losses(compared)
     if frame.empty:
         return "<p>The intervals show no loss.</p>\n"
-    if frame["scene and gaze"].nunique() == 1:
-        frame = frame.drop(columns="scene and gaze")
-    return folded(frame, "Where uniform sampling of the same cost scored better")
+    return folded(_without_the_only(frame, "scene and gaze"), "Where uniform sampling of the same cost scored better")
 
 
 def shares(results, place):

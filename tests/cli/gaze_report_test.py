@@ -117,6 +117,12 @@ class GazeReport(reports.ReportTest):
         page = (self.folder / "noisy.html").read_text()
         self.assertTrue(re.search(r"<li>events by ivt: noise of .*these events are not to be relied on; ", page, re.S))
         self.assertFalse(re.findall(".{30}`", page))
+        self.assertIn("6000 samples in 20 s, ", reports.Page(page).headline)
+        self.assertTrue(reports.Page(page).headline.endswith(" fixations, data loss 0 %"), reports.Page(page).headline)  # none is missing
+        self.assertTrue("<code>--gaze-process</code> one-euro" in page)
+        self.write("<b>&.csv", (self.folder / "noisy.csv").read_text())
+        self.made(main, "<b>&.csv", "-o", "named.html")
+        self.assertFalse("<b>&.csv" in (self.folder / "named.html").read_text())
 
     def test_the_heat_map_is_where_and_as_long_as_fixations_were(self):
         """Half a second on each of two places: two peaks of seconds / (2 pi sigma^2) there."""

@@ -94,6 +94,7 @@ class Report(reports.ReportTest):
         for part, score in foveated["scores"]["flip"].items():  # the same cost without foveation is better, everywhere or here
             few["scores"]["flip"][part] = {key: value if value is None or key == "resolved" else value / 10 for key, value in score.items()}
         raw["fixed_quality"] += [{"metric": "mse", "at": 0.0123456, "scene": "box", "gaze": "glide", "speed_up": 3.141593, "model_gain": 1.234567, "bound": ">"}]
+        raw["controls"][0]["of"] = "fov"
         raw["controls"] += [{"scene": "box", "gaze": "glide", "metric": "flip fovea", "of": "fov", "wrong": "center", "right_score": 0.1234567, "wrong_score": 0.7654321,
                              "sensitive": True, "why": ""}]
         raw["shares"] = {"glide": {"fixation": 0.8126, "in-flight": 0.1874}}
@@ -177,8 +178,9 @@ class Report(reports.ReportTest):
                 bound, _, value = speed.partition(" ")
                 self.assertEqual(bound, one["bound"])
                 self.assert_shows(value, one["speed_up"])
-        controls = tables_left.pop("The same settings rendered with a wrong gaze and scored with the right one")[1:]
-        for (_, metric, gaze, right, wrong, *_), one in zip(controls, raw["controls"], strict=True):
+        head, *controls = tables_left.pop("The same settings rendered with a wrong gaze and scored with the right one")
+        self.assertEqual(head, ["metric", "gaze", "right", "wrong", "does the metric notice"])  # one scene and gaze, and no reason
+        for (metric, gaze, right, wrong, _), one in zip(controls, raw["controls"], strict=True):
             self.assertEqual((metric, gaze), (one["metric"], one["wrong"]))
             self.assert_shows(right, one["right_score"])
             self.assert_shows(wrong, one["wrong_score"])

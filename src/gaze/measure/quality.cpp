@@ -67,7 +67,7 @@ GazeQuality measure_quality(const GazeLog& whole, std::optional<Eye> eye) {
     const double seconds = static_cast<double>(span.end_ns - span.begin_ns) * 1e-9;
     // Each sample stands for one step of the clock, the last one too.
     quality.duration_s += seconds + static_cast<double>(step_ns) * 1e-9;
-    expected += seconds * quality.sampling_rate_hz + 1;
+    expected += std::round(seconds * quality.sampling_rate_hz) + 1;
   }
   quality.usable = static_cast<std::size_t>(
       std::count_if(log.samples.begin(), log.samples.end(), [](const GazeSample& s) { return is_usable(s.validity); }));
