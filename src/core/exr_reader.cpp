@@ -19,6 +19,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/exr_header.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
@@ -56,10 +57,9 @@ std::uint64_t pixels_of(const Imath::Box2i& window) {
          static_cast<std::uint64_t>(std::int64_t{window.max.y} - window.min.y + 1);
 }
 
-std::uint64_t size_of(const PictureSource& source) {
+std::uint64_t size_of(const PictureInput& input) {
   std::error_code ignored;
-  const std::uint64_t bytes =
-      source.bytes.empty() ? std::filesystem::file_size(source.path, ignored) : source.bytes.size();
+  const std::uint64_t bytes = input.path.empty() ? input.bytes.size() : std::filesystem::file_size(input.path, ignored);
   return ignored ? 0 : bytes;
 }
 
@@ -121,13 +121,13 @@ struct ExrReader::Light {
   std::vector<std::string> channels;  // three or, with alpha, four; or none
 };
 
-ExrReader::ExrReader(const PictureSource& source, const std::string& place)
-    : file_(std::make_unique<File>()), place_(place), file_bytes_(size_of(source)) {
+ExrReader::ExrReader(const PictureInput& input, const std::string& place)
+    : file_(std::make_unique<File>()), place_(place), file_bytes_(size_of(input)) {
   try {
-    if (source.bytes.empty()) {
-      file_->input = std::make_unique<Imf::MultiPartInputFile>(source.path.c_str(), 0);
+    if (!input.path.empty()) {
+      file_->input = std::make_unique<Imf::MultiPartInputFile>(input.path.c_str(), 0);
     } else {
-      file_->stream = std::make_unique<MemoryStream>(source.bytes);
+      file_->stream = std::make_unique<MemoryStream>(input.bytes);
       file_->input = std::make_unique<Imf::MultiPartInputFile>(*file_->stream, 0);
     }
   } catch (const std::bad_alloc&) {
@@ -153,12 +153,41 @@ ExrReader::ExrReader(const PictureSource& source, const std::string& place)
 
 ExrReader::~ExrReader() = default;
 
+std::unique_ptr<ExrReader> open_exr(const PictureInput& input, const std::string& place) {
+  std::error_code ignored;
+  if (input.path.empty()) {
+    check_exr_header(input.bytes, place);
+  } else if (std::filesystem::is_regular_file(input.path, ignored)) {
+    check_exr_header(input.path, place);
+  } else {
+    throw Error(ErrorKind::input, place, "there is no such file");
+  }
+  return std::unique_ptr<ExrReader>(new ExrReader(input, place));
+}
+
 int ExrReader::parts() const {
   return file_->input->parts();
 }
 
 const Imf::Header& ExrReader::header(int part) const {
   return file_->input->header(part);
+}
+
+bool ExrReader::is_whole() const {
+  try {
+    for (int part = 0; part < parts(); ++part) {
+      if (!file_->input->partComplete(part)) {
+        return false;
+      }
+    }
+    Imf::InputPart last(*file_->input, parts() - 1);
+    const char* pixels = nullptr;
+    int size = 0;
+    last.rawPixelData(last.header().dataWindow().max.y, pixels, size);
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
 }
 
 ExrReader::Light ExrReader::light_of(int part, const std::string& layer) const {

@@ -35,8 +35,6 @@ struct ExrTarget {
 
 class ExrReader final : public PictureReader {
  public:
-  // The header, which check_exr_header() has passed. `place` is that of errors.
-  ExrReader(const PictureSource& source, const std::string& place);
   ~ExrReader() override;
 
   // Finds the channels that are light, and counts them as `channels`: R, G and B, or r, g and b, without a layer's
@@ -51,12 +49,17 @@ class ExrReader final : public PictureReader {
   std::string read(int count, std::span<float> values) override;         // of the channels that were chosen
 
   [[nodiscard]] int parts() const;
+  // Whether all blocks are there: a copy that was cut still has its table of them, so the last one is read.
+  [[nodiscard]] bool is_whole() const;
   [[nodiscard]] const Imf::Header& header(int part) const;
   // Those of the window's values for which the part has data. Error(input) for channels that have no value of their own
   // for each pixel; what is wrong with the file, or nothing.
   std::string read(int part, const Imath::Box2i& window, std::span<const ExrTarget> targets);
 
  private:
+  friend std::unique_ptr<ExrReader> open_exr(const PictureInput& input, const std::string& place);
+  ExrReader(const PictureInput& input, const std::string& place);
+
   struct Light;
   [[nodiscard]] Light light_of(int part, const std::string& layer) const;
   [[nodiscard]] std::vector<Light> lights() const;
@@ -72,5 +75,9 @@ class ExrReader final : public PictureReader {
   std::string place_;
   std::uint64_t file_bytes_ = 0;
 };
+
+// The only way to a reader, and so to what an EXR holds: its header is looked at before OpenEXR sees it. `place` is
+// that of errors, Error(input) for what is no EXR, and for deep ones.
+std::unique_ptr<ExrReader> open_exr(const PictureInput& input, const std::string& place);
 
 }  // namespace gazetrace

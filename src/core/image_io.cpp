@@ -14,7 +14,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "core/exr_header.hpp"
 #include "core/exr_reader.hpp"
 #include "core/jpeg_file.hpp"
 #include "core/picture_module.hpp"
@@ -36,6 +35,11 @@ struct OpenPicture {
   std::vector<std::uint8_t> bytes;
   std::unique_ptr<PictureReader> reader;  // never empty
   std::uint64_t file_size = 0;
+};
+
+struct Opening {
+  bool on_one_thread = false;
+  const std::vector<std::string>* channels = nullptr;  // of an EXR: one of these, as numbers; null: its light
 };
 
 // The most pixels that a byte of a file can stand for, by OpenImageIO's name of the format. PNG: deflate's 1032 bytes
@@ -267,7 +271,7 @@ std::vector<std::uint8_t> bytes_of_file(std::ifstream& stream, std::uint64_t siz
 
 // Opens a picture by the kind that its content says, with the bytes that concern it. Error(input) for what is no
 // picture.
-OpenPicture open_bytes(const char* format, PictureInput input, std::vector<std::uint8_t> own, bool on_one_thread,
+OpenPicture open_bytes(const char* format, PictureInput input, std::vector<std::uint8_t> own, const Opening& opening,
                        const std::string& place) {
   OpenPicture picture;
   picture.bytes = std::move(own);
@@ -279,14 +283,20 @@ OpenPicture open_bytes(const char* format, PictureInput input, std::vector<std::
     picture.bytes = kind == "png" ? essential_png(input.bytes, place) : essential_jpeg(input.bytes, place);
     input.bytes = picture.bytes;
   }
-  const PictureSource source{format, input.path, input.bytes, on_one_thread};
-  if (kind == kRadiance) {
-    picture.reader = open_radiance(input.bytes, place);
-  } else if (kind == kExr) {
-    auto reader = std::make_unique<ExrReader>(source, place);
-    reader->choose_light();
+  if (kind == kExr) {
+    auto reader = open_exr(input, place);
+    if (opening.channels != nullptr) {
+      reader->choose_channel(*opening.channels);
+    } else {
+      reader->choose_light();
+    }
     picture.reader = std::move(reader);
+  } else if (opening.channels != nullptr) {
+    throw Error(ErrorKind::input, place, "is no EXR, which numbers for each pixel are read from", "write an EXR");
+  } else if (kind == kRadiance) {
+    picture.reader = open_radiance(input.bytes, place);
   } else {
+    const PictureSource source{format, input.path, input.bytes, opening.on_one_thread};
     std::string problem;
     picture.reader = picture_module().open(source, problem);
     if (!picture.reader) {
@@ -318,7 +328,8 @@ void check_is_there(const std::string& path, const std::string& place) {
   }
 }
 
-OpenPicture open_picture(const PictureInput& input, const std::string& place, bool on_one_thread) {
+// The only place at which a picture comes in, whatever it is for.
+OpenPicture open_picture(const PictureInput& input, const std::string& place, const Opening& opening = {}) {
   const bool is_file = !input.path.empty();
   if (is_file) {
     check_is_there(input.path, place);
@@ -337,11 +348,6 @@ OpenPicture open_picture(const PictureInput& input, const std::string& place, bo
     throw Error(ErrorKind::input, where,
                 "cannot be read: it is no picture of a known kind (PNG, JPEG, WebP, TIFF, DPX, EXR, HDR, ...)");
   }
-  if (is_file) {
-    check_exr_header(input.path, where);
-  } else {
-    check_exr_header(input.bytes, where);
-  }
   constexpr std::uint64_t kMostFileBytes = std::uint64_t{4} << 30U;
   if (is_png(head)) {
     check_size_of_png(head, size, where);
@@ -351,7 +357,7 @@ OpenPicture open_picture(const PictureInput& input, const std::string& place, bo
   }
   OpenPicture picture = open_bytes(
       format, input, is_file && is_read_whole(format) ? bytes_of_file(stream, size) : std::vector<std::uint8_t>(),
-      on_one_thread, where);
+      opening, where);
   picture.file_size = size;
   return picture;
 }
@@ -359,8 +365,8 @@ OpenPicture open_picture(const PictureInput& input, const std::string& place, bo
 // A picture whose size is no more than it may be. Of a PNG all pixels are unpacked once: what is damaged in them would
 // be printed by the library that reads them, and data beyond them unpacked to the end.
 OpenPicture open_to_read(const PictureInput& input, const std::string& place, const PictureLimits& limits,
-                         bool on_one_thread) {
-  OpenPicture picture = open_picture(input, place, on_one_thread);
+                         const Opening& opening = {}) {
+  OpenPicture picture = open_picture(input, place, opening);
   const std::string where = place_of(input, place);
   check_size(picture, where, limits);
   if (is_png(picture.bytes)) {
@@ -404,19 +410,19 @@ ImageRgb upright(ImageRgb image, int orientation) {
 }  // namespace
 
 ImageRgba read_image_rgba(const PictureInput& input, const std::string& place, const PictureLimits& limits) {
-  const OpenPicture picture = open_to_read(input, place, limits, true);
+  const OpenPicture picture = open_to_read(input, place, limits, {.on_one_thread = true});
   return with_memory(picture.reader->facts, place, [&] { return read_rgba(*picture.reader, place_of(input, place)); });
 }
 
 PictureSize read_picture_size(const PictureInput& input, const std::string& place, const PictureLimits& limits) {
-  const OpenPicture picture = open_picture(input, place, true);
+  const OpenPicture picture = open_picture(input, place, {.on_one_thread = true});
   check_size(picture, place_of(input, place), limits);
   const PictureFacts& facts = picture.reader->facts;
   return {facts.width_px, facts.height_px, facts.is_deep, 1};
 }
 
 Picture read_picture(const std::string& path, const PictureLimits& limits) {
-  const OpenPicture open = open_to_read(path, path, limits, false);
+  const OpenPicture open = open_to_read(path, path, limits);
   Picture picture{open.reader->facts, {}};
   picture.rgb = with_memory(picture.facts, path,
                             [&] { return upright(read_rgb(*open.reader, path), picture.facts.orientation); });
@@ -432,10 +438,8 @@ Picture read_picture(const std::string& path, const PictureLimits& limits) {
 }
 
 ImageGray read_picture_channel(const std::string& path, const std::vector<std::string>& names) {
-  check_is_there(path, path);
-  check_exr_header(path, path);
-  ExrReader reader({kExr.data(), path, {}, false}, path);
-  reader.choose_channel(names);
+  const OpenPicture picture = open_to_read(path, path, kPictureLimits, {.channels = &names});
+  PictureReader& reader = *picture.reader;
   return with_memory(reader.facts, path, [&] {
     ImageGray image(reader.facts.width_px, reader.facts.height_px);
     check_read(reader.read(1, image.pixels), path);
@@ -458,7 +462,7 @@ std::string read_image_note(const std::string& path) {
     return *note;
   }
   try {
-    return open_picture(path, path, false).reader->note;
+    return open_picture(path, path).reader->note;
   } catch (const Error&) {
     return {};
   }

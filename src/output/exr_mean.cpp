@@ -3,7 +3,6 @@
 
 #include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfIntAttribute.h>
-#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <fmt/format.h>
 
@@ -14,7 +13,7 @@
 #include <optional>
 #include <sstream>
 
-#include "core/exr_header.hpp"
+#include "core/exr_reader.hpp"
 #include "gazetrace/cryptomatte.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/light_groups.hpp"
@@ -236,9 +235,8 @@ void copy_texts(const Imf::Header& from, ExrPicture& picture) {
 MeanStamp read_mean_stamp(const std::string& path) {
   MeanStamp stamp;
   try {
-    check_exr_header(path, path);
-    const Imf::MultiPartInputFile file(path.c_str(), 0);
-    const Imf::Header& header = file.header(0);
+    const std::unique_ptr<ExrReader> file = open_exr(path, path);
+    const Imf::Header& header = file->header(0);
     if (const auto* frame = header.findTypedAttribute<Imf::IntAttribute>("gazetrace:frame")) {
       stamp.frame = frame->value();
     }
