@@ -42,7 +42,7 @@ def make_materials(out):
     return {
         "tiles": out.material("tiles", baseColorTexture=out.texture_info(texture["tiles_color"], tiles), **floor),
         "clay tiles": out.material("clay tiles", baseColorTexture=out.texture_info(texture["clay_color"], tiles), **floor),
-        "plaster": out.material("plaster", base=(0.86, 0.74, 0.58), roughness=0.9, **plaster),
+        "plaster": out.material("plaster", base=(0.86, 0.74, 0.58), roughness=0.9, doubleSided=True, **plaster),
         "niche": out.material("niche", base=(0.045, 0.155, 0.20), roughness=0.75, **plaster),
         "stone": out.material("stone", base=(0.66, 0.58, 0.47), roughness=0.62, **plaster),
         "chart": out.material("chart", roughness=0.34, baseColorTexture=out.texture_info(chart)),
