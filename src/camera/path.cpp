@@ -30,8 +30,9 @@ const std::vector<CameraFormat>& formats() {
   return all;
 }
 
-// KITTI's odometry poses, the rows of a 3x4 matrix on a line, are common and have no times.
-void refuse_kitti(const CameraFile& file) {
+// KITTI's odometry poses, the rows of a 3x4 matrix on a line, are common and have no times; others write all 16
+// numbers, and some a time in front.
+void refuse_matrices(const CameraFile& file) {
   LineReader lines(file.text);
   std::vector<std::string_view> cells;
   std::string_view line;
@@ -44,6 +45,12 @@ void refuse_kitti(const CameraFile& file) {
   if (cells.size() == 12 && numbers) {
     throw Error(ErrorKind::input, file.path, "is in KITTI's form, 12 numbers of a matrix on each line without a time",
                 "evo's kitti_poses_and_timestamps_to_trajectory.py makes a TUM file of it and its times.txt");
+  }
+  if ((cells.size() == 13 || cells.size() == 16 || cells.size() == 17) && numbers) {
+    throw Error(ErrorKind::input, file.path,
+                fmt::format("has matrices of {} numbers on each line{}, which no reader takes", cells.size() / 4 * 4,
+                            cells.size() % 2 == 1 ? ", with a time or a number in front" : ""),
+                "write TUM lines `t tx ty tz qx qy qz qw`, or transforms.json with one transform_matrix a frame");
   }
 }
 
@@ -58,7 +65,7 @@ const CameraFormat& choose_format(const CameraFile& file, const std::string& nam
   if (!name.empty()) {
     throw Error(ErrorKind::usage, "", unknown_name_message("camera path format", name, names));
   }
-  refuse_kitti(file);
+  refuse_matrices(file);
   const auto best = std::max_element(formats().begin(), formats().end(),
                                      [&](const auto& a, const auto& b) { return a.sniff(file) < b.sniff(file); });
   if (!(best->sniff(file) > 0)) {

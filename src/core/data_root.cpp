@@ -116,6 +116,8 @@ int hex_digit(char c) {
   return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }
 
+}  // namespace
+
 std::string percent_decoded(std::string_view uri) {
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -128,8 +130,6 @@ std::string percent_decoded(std::string_view uri) {
   }
   return text;
 }
-
-}  // namespace
 
 std::vector<fs::path> data_roots(const std::string& path) {
   std::vector<fs::path> roots;

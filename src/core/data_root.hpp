@@ -24,5 +24,6 @@ void check_within(const std::vector<std::filesystem::path>& roots, const std::st
 // The file that a uri in the file `path` names, relative to the folder of that. Percent escapes are decoded (RFC 3986,
 // section 2.1). Where nothing has that name, backslashes in it separate folders, as on Windows.
 std::string file_of_uri(const std::string& path, std::string_view uri);
+std::string percent_decoded(std::string_view uri);
 
 }  // namespace gazetrace

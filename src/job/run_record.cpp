@@ -121,8 +121,8 @@ Warnings result_warnings(const SequenceResult& result, const FramePlan& plan) {
       static_cast<double>(result.seen_backs) / static_cast<double>(std::max<std::uint64_t>(result.camera_rays, 1));
   if (backs >= kNoticedBacks) {
     warnings.push_back(fmt::format(
-        "in {:.2g} % of the pictures, by their samples, the camera sees the back of faces that are not double-sided, "
-        "which glTF does not draw: `cull-back-faces` looks through them",
+        "in {:.2g} % of the pictures' area, by their samples, the camera sees the back of faces that are not "
+        "double-sided, which glTF does not draw: `cull-back-faces` looks through them",
         100 * backs));
   }
   if (result.clamped_view_pixels > 0) {

@@ -40,12 +40,38 @@ Vec3d sky_radiance(const Vec3d& direction) {
 // The picture, what is made of it and its file, while the tables are made by which its light is sampled.
 constexpr std::uint64_t kBytesOfAPixel = 32;
 
-void check_layout(const PictureFacts& facts, const std::string& path, Warnings& warnings) {
+// Whether the picture is the cross of a cube: its faces lie on six of four by three or three by four places, and
+// nothing lies at the corners.
+bool is_cross(const ImageRgb& rgb) {
+  const bool is_wide = 3 * rgb.width_px == 4 * rgb.height_px;
+  if (!is_wide && 4 * rgb.width_px != 3 * rgb.height_px) {
+    return false;
+  }
+  const int face = rgb.width_px / (is_wide ? 4 : 3);
+  const auto is_of_one_color = [&](int column, int row) {
+    const Vec3f first = rgb(column * face, row * face);
+    for (int y = row * face; y < (row + 1) * face; ++y) {
+      for (int x = column * face; x < (column + 1) * face; ++x) {
+        if (rgb(x, y) != first) {
+          return false;
+        }
+      }
+    }
+    return true;
+  };
+  const int right = is_wide ? 3 : 2;
+  const int bottom = is_wide ? 2 : 3;
+  return is_of_one_color(0, 0) && is_of_one_color(right, 0) && is_of_one_color(0, bottom) &&
+         is_of_one_color(right, bottom) && !is_of_one_color(1, 1);
+}
+
+void check_layout(const Picture& picture, const std::string& path, Warnings& warnings) {
+  const PictureFacts& facts = picture.facts;
   const std::int64_t width = facts.width_px;
   const std::int64_t height = facts.height_px;
   constexpr std::int64_t kLeastFacePx = 4;  // smaller pictures are of one light
   const bool is_large = std::min(width, height) >= kLeastFacePx;
-  if (facts.is_cube_map || (is_large && (width == 6 * height || height == 6 * width))) {
+  if (facts.is_cube_map || (is_large && (width == 6 * height || height == 6 * width || is_cross(picture.rgb)))) {
     throw Error(ErrorKind::input, path, "it is a cube map; an environment is a latitude-longitude map",
                 "convert it, for example by 'oiiotool' or 'cmft'");
   }
@@ -107,7 +133,7 @@ Environment load_environment(const std::string& path, double rotation_deg, doubl
   limits.most_pixels =
       std::max<std::uint64_t>(1, (memory_bytes > 0 ? memory_bytes : most_memory_bytes()) / kBytesOfAPixel);
   Picture picture = read_picture(path, limits);
-  check_layout(picture.facts, path, environment.warnings);
+  check_layout(picture, path, environment.warnings);
   make_light(picture, path, environment.warnings);
   environment.radiance = std::move(picture.rgb);
   environment.rotation_rad = rotation_deg * kRadPerDeg;

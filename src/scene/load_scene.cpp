@@ -9,6 +9,7 @@
 #include <mutex>
 #include <utility>
 
+#include "core/data_root.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/scene.hpp"
 #include "scene/gltf/accessor.hpp"
@@ -142,7 +143,7 @@ class LoadCount {
 
 void warn_of_backslashes(const OpenScene& open, Warnings& warnings) {
   const auto add = [&](const std::string& uri) {
-    if (!is_data_uri(uri) && uri.find('\\') != std::string::npos) {
+    if (!is_data_uri(uri) && percent_decoded(uri).find('\\') != std::string::npos) {
       warnings.push_back("the uri '" + bounded(uri, 200) +
                          "' holds a backslash, which glTF does not allow; it was read as /");
     }

@@ -50,8 +50,12 @@ void check_points(std::string_view line, const std::string& place) {
     return;
   }
   split_cells(trim(line), ' ', cells);
-  const bool numbers = std::all_of(cells.begin(), cells.end(),
-                                   [](std::string_view cell) { return number_from(trim(cell)).has_value(); });
+  // A picture's name may hold numbers, too; its third value is a part of a quaternion, where points have a number.
+  bool numbers = true;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto value = number_from(trim(cells[i]));
+    numbers = numbers && value && (i % 3 != 2 || *value == std::trunc(*value));
+  }
   if (!numbers || cells.size() % 3 != 0) {
     throw Error(ErrorKind::input, place, "where the points of a picture belong, there are no triples X Y POINT3D_ID",
                 "a picture without points has an empty line here; put it back after each picture");

@@ -122,13 +122,19 @@ void warn_about_rate(const Json& json, std::size_t poses, const FrameRate& fps, 
   }
 }
 
-std::optional<double> field_of_view(const Json& object) {
-  const auto height = number_of(object, "h");
-  const auto width = number_of(object, "w");
-  const auto focal_y = number_of(object, "fl_y");
-  const auto focal_x = number_of(object, "fl_x");
-  const auto angle_y = number_of(object, "camera_angle_y");
-  const auto angle_x = number_of(object, "camera_angle_x");
+// A frame may state some of its lens, and the file what all frames share.
+std::optional<double> of_frame_or_all(const Json& frame, const Json& all, const char* key) {
+  const auto own = number_of(frame, key);
+  return own ? own : number_of(all, key);
+}
+
+std::optional<double> field_of_view(const Json& object, const Json& all) {
+  const auto height = of_frame_or_all(object, all, "h");
+  const auto width = of_frame_or_all(object, all, "w");
+  const auto focal_y = of_frame_or_all(object, all, "fl_y");
+  const auto focal_x = of_frame_or_all(object, all, "fl_x");
+  const auto angle_y = of_frame_or_all(object, all, "camera_angle_y");
+  const auto angle_x = of_frame_or_all(object, all, "camera_angle_x");
   const auto positive = [](const std::optional<double>& value) { return value && *value > 0; };
   if (positive(focal_y) && positive(height)) {
     return 2.0 * std::atan2(0.5 * *height, *focal_y);
@@ -148,22 +154,31 @@ std::optional<double> field_of_view(const Json& object) {
   return std::nullopt;
 }
 
-void warn_about_lens(const Json& json, const std::string& path, CameraKeys& result) {
-  const auto center_x = number_of(json, "cx");
-  const auto center_y = number_of(json, "cy");
-  const bool off_center = (center_x && std::abs(*center_x - 0.5 * number_of(json, "w").value_or(2 * *center_x)) > 1) ||
-                          (center_y && std::abs(*center_y - 0.5 * number_of(json, "h").value_or(2 * *center_y)) > 1);
-  constexpr std::array<const char*, 6> kDistortions{"k1", "k2", "k3", "k4", "p1", "p2"};
-  const bool bent = std::any_of(kDistortions.begin(), kDistortions.end(),
-                                [&](const char* key) { return number_of(json, key).value_or(0) != 0; });
-  const auto states = [&](const char* key, const char* part) {
-    const auto model = json.find(key);
-    return model != json.end() && model->is_string() && model->get<std::string>().find(part) != std::string::npos;
+// Whether a frame's lens is not straight and centred.
+bool is_odd_lens(const Json& frame, const Json& all) {
+  const auto is_off_center = [&](const char* center, const char* size) {
+    const auto at = of_frame_or_all(frame, all, center);
+    return at && std::abs(*at - 0.5 * of_frame_or_all(frame, all, size).value_or(2 * *at)) > 1;
   };
-  const bool fisheye =
-      states("camera_model", "FISHEYE") ||
-      (json.contains("camera_type") && !states("camera_type", "persp") && !states("camera_type", "Persp"));
-  if (off_center || bent || fisheye) {
+  constexpr std::array<const char*, 6> kDistortions{"k1", "k2", "k3", "k4", "p1", "p2"};
+  const bool is_bent = std::any_of(kDistortions.begin(), kDistortions.end(),
+                                   [&](const char* key) { return of_frame_or_all(frame, all, key).value_or(0) != 0; });
+  const auto text_of = [&](const char* key) {
+    for (const Json* const object : {&frame, &all}) {
+      if (const auto found = object->find(key); found != object->end() && found->is_string()) {
+        return found->get<std::string>();
+      }
+    }
+    return std::string();
+  };
+  const std::string type = text_of("camera_type");
+  const bool is_wide = text_of("camera_model").find("FISHEYE") != std::string::npos ||
+                       (!type.empty() && type.find("ersp") == std::string::npos);
+  return is_off_center("cx", "w") || is_off_center("cy", "h") || is_bent || is_wide;
+}
+
+void warn_about_lens(const Json& json, const Json& frames, const std::string& path, CameraKeys& result) {
+  if (std::any_of(frames.begin(), frames.end(), [&](const Json& frame) { return is_odd_lens(frame, json); })) {
     result.warnings.push_back(path + ": the lens is distorted or off its centre; a straight, centred one is rendered");
   }
   if (!result.yfov_rad && number_of(json, "camera_angle_x")) {
@@ -226,7 +241,7 @@ CameraKeys read_camera_nerf(const CameraFile& file, const CameraReadOptions& opt
       picture.key.pose = {matrix.t, rotation_of(matrix)};
     }
     pictures.push_back(std::move(picture));
-    if (const auto own = list == "frames" ? field_of_view(frame) : number_of(frame, "fov")) {
+    if (const auto own = list == "frames" ? field_of_view(frame, json) : number_of(frame, "fov")) {
       yfovs_rad.push_back(list == "frames" ? *own : *own * kRadPerDeg);
     }
   }
@@ -241,11 +256,11 @@ CameraKeys read_camera_nerf(const CameraFile& file, const CameraReadOptions& opt
     result.keys.push_back(picture.key);
     result.keys.back().t_ns = frame_time_at(number, 1, options, file.path);
   }
-  if (const auto common = field_of_view(json); common && yfovs_rad.empty()) {
+  if (const auto common = field_of_view(json, json); common && yfovs_rad.empty()) {
     yfovs_rad.push_back(*common);
   }
   result.yfov_rad = one_field_of_view(yfovs_rad, file.path, result.warnings);
-  warn_about_lens(json, file.path, result);
+  warn_about_lens(json, *frames, file.path, result);
   if (steered != nullptr) {
     result.warnings.push_back(fmt::format(
         "{}: is taken out of instant-ngp's unit cube to the world of its transforms.json by the usual scale of {} and "

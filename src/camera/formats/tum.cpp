@@ -31,9 +31,11 @@ void refuse_stamps_of_other_units(const std::vector<double>& stamps_s, const std
     return;
   }
   const bool clock = last_s >= kMostStamp_s;
-  const char* unit = last_s >= (clock ? 1e17 : 1e6 * kMostStep_s)   ? "nanoseconds"
-                     : last_s >= (clock ? 1e14 : 1e3 * kMostStep_s) ? "microseconds"
-                                                                    : "milliseconds";
+  constexpr double kUsualStep_s = 10;  // the largest unit by which a step is no longer
+  const double told = clock ? last_s : step_s;
+  const char* unit = told >= (clock ? 1e17 : 1e6 * kUsualStep_s)   ? "nanoseconds"
+                     : told >= (clock ? 1e14 : 1e3 * kUsualStep_s) ? "microseconds"
+                                                                   : "milliseconds";
   throw Error(ErrorKind::input, path,
               fmt::format("its time stamps look like {}, where TUM has seconds: {}", unit,
                           clock ? fmt::format("the last is {:.0f}", last_s)

@@ -132,7 +132,7 @@ std::span<const std::uint8_t> view_bytes(const GltfDocument& document, int buffe
 }
 
 std::vector<float> read_floats(const GltfDocument& document, int accessor_index, int components,
-                               const std::string& place, std::size_t* not_finite) {
+                               const std::string& place, std::size_t* not_finite, float instead) {
   const GltfAccessor& accessor = document.accessors[static_cast<std::size_t>(accessor_index)];
   if (accessor.components != components) {
     throw Error(ErrorKind::input, place,
@@ -152,7 +152,7 @@ std::vector<float> read_floats(const GltfDocument& document, int accessor_index,
   for (auto bad = std::find_if_not(values.begin(), values.end(), is_finite); bad != values.end();
        bad = std::find_if_not(bad, values.end(), is_finite)) {
     if (not_finite != nullptr) {
-      std::fill_n(bad - (bad - values.begin()) % components, components, 0.0F);
+      std::fill_n(bad - (bad - values.begin()) % components, components, instead);
       ++*not_finite;
       continue;
     }

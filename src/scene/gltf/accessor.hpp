@@ -29,9 +29,9 @@ std::span<const std::uint8_t> view_bytes(const GltfDocument& document, int buffe
 
 // The accessor's count * components values. Normalised integers become 0..1 or -1..1 (glTF 2.0 section 3.6.2.2), others
 // keep their value. Error(input) that names `place` where the accessor has other components or a value is not finite;
-// with `not_finite`, elements with such values become 0 and are counted there.
+// with `not_finite`, elements with such values become `instead` and are counted there.
 std::vector<float> read_floats(const GltfDocument& document, int accessor, int components, const std::string& place,
-                               std::size_t* not_finite = nullptr);
+                               std::size_t* not_finite = nullptr, float instead = 0);
 
 // The values of an accessor of unsigned integers of any width. Error(input) that names `place` for other accessors.
 std::vector<std::uint32_t> read_indices(const GltfDocument& document, int accessor, const std::string& place);

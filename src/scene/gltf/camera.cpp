@@ -16,7 +16,7 @@ namespace {
 constexpr double kFarthestMiddle_m = 1e6;  // beyond it, rays have no precision
 constexpr double kMostAspect = 1e4;        // beyond it, the height of the view leaves no precision for directions
 
-Projection projection_of(const GltfDocument& document, int camera_index) {
+Projection projection_of(const GltfDocument& document, int camera_index, Warnings& warnings) {
   const GltfCamera& from = document.cameras[static_cast<std::size_t>(camera_index)];
   const std::string place = document.path + ": cameras[" + std::to_string(camera_index) + "]";
   Projection projection;
@@ -35,6 +35,9 @@ Projection projection_of(const GltfDocument& document, int camera_index) {
       throw Error(ErrorKind::input, place, "ymag must not be zero");
     }
     projection.aspect = std::abs(from.xmag) / projection.ymag_m;
+    if (projection.aspect == 0) {
+      warnings.push_back(place + ": xmag must not be zero; the width follows the frame's shape");
+    }
   }
   if (!(projection.aspect >= 0 && projection.aspect <= kMostAspect)) {
     throw Error(ErrorKind::input, place, "a width of " + std::to_string(projection.aspect) + " heights is no view",
@@ -57,7 +60,7 @@ CameraPath make_path(const GltfDocument& document, const std::string& name, int 
       animated_chain(document, chain, "camera '" + name + "'", warnings));
   CameraPath path;
   path.source = document.path + ": camera '" + name + "'";
-  path.projection = projection_of(document, camera);
+  path.projection = projection_of(document, camera, warnings);
   for (const AnimatedNode& node : *nodes) {
     for (const auto* track : {&node.translation_track, &node.rotation_track, &node.scale_track}) {
       if (*track) {

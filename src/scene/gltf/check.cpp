@@ -408,54 +408,6 @@ void take_binary_sources(Walker& walker, Json& root, CheckedGltf& checked) {
 
 }  // namespace
 
-const std::vector<std::string>& known_gltf_extensions() {
-  static const std::vector<std::string> kKnown = [] {
-    std::vector<std::string> names{
-        // geometry
-        "KHR_mesh_quantization",
-        "EXT_mesh_gpu_instancing",
-        "EXT_meshopt_compression",
-        "KHR_draco_mesh_compression",
-        "CESIUM_RTC",
-        // pictures
-        "KHR_texture_transform",
-        "EXT_texture_webp",
-        // lights
-        "KHR_lights_punctual",
-        // materials, beside material_extensions.def
-        "KHR_materials_unlit",
-    };
-    for (const MaterialExtension& extension : material_extension_readers()) {
-      names.emplace_back(extension.extension);
-    }
-    return names;
-  }();
-  return kKnown;
-}
-
-const char* shown_without(std::string_view extension) {
-  constexpr const char* kNothingDrawn = "nothing of it is drawn";
-  static constexpr std::array<std::pair<std::string_view, const char*>, 14> kShown{{
-      {"KHR_materials_variants", "materials are those that stand without a choice"},
-      {"KHR_node_visibility", "what it hides is left out, and stays so"},
-      {"MSFT_lod", "the finest level is shown"},
-      {"CESIUM_primitive_outline", "outlines are not drawn"},
-      {"KHR_xmp", kNothingDrawn},
-      {"KHR_xmp_json_ld", kNothingDrawn},
-      {"KHR_node_hoverability", kNothingDrawn},
-      {"KHR_node_selectability", kNothingDrawn},
-      {"KHR_audio", kNothingDrawn},
-      {"KHR_audio_emitter", kNothingDrawn},
-      {"EXT_mesh_features", kNothingDrawn},
-      {"EXT_instance_features", kNothingDrawn},
-      {"EXT_structural_metadata", kNothingDrawn},
-      {"FB_ngon_encoding", kNothingDrawn},
-  }};
-  const auto* const it =
-      std::find_if(kShown.begin(), kShown.end(), [&](const auto& row) { return row.first == extension; });
-  return it == kShown.end() ? nullptr : it->second;
-}
-
 CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text, std::uint64_t memory_bytes) {
   if (is_nested_too_deep(json_text, kMostNesting)) {
     throw Error(ErrorKind::input, path,

@@ -21,6 +21,7 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 constexpr double kWeightTolerance = 0.02;  // the rounding error of four weights in 8 bits
+constexpr float kRounding = 1e-4F;         // weights that are this little below zero are none
 
 std::string primitive_place(const GltfDocument& document, std::size_t mesh, std::size_t primitive) {
   return document.path + ": meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]";
@@ -111,15 +112,20 @@ class PrimitiveReader {
                   std::to_string(count) + " values for " + std::to_string(*vertex_count_) + " positions",
                   "export the file again");
     }
-    // Without a direction or a place in a picture a vertex can still be drawn; without a position or a weight it
-    // cannot.
-    const bool can_be_mended = attribute == "NORMAL" || attribute == "TANGENT" || attribute.starts_with("TEXCOORD_");
+    // Without a direction, a color or a place in a picture a vertex can still be drawn; without a position or a weight
+    // it cannot.
+    const bool is_direction = attribute == "NORMAL" || attribute == "TANGENT";
+    const bool is_color = attribute.starts_with("COLOR_");
+    const bool is_white = is_color && &attributes == &primitive_.attributes;  // what morph targets add is nothing then
+    const bool can_be_mended = is_direction || is_color || attribute.starts_with("TEXCOORD_");
     std::size_t mended = 0;
-    std::vector<float> values =
-        read_floats(document_, it->second, components, place, can_be_mended ? &mended : nullptr);
+    std::vector<float> values = read_floats(document_, it->second, components, place, can_be_mended ? &mended : nullptr,
+                                            is_white ? 1.0F : 0.0F);
     if (mended > 0) {
-      warnings_.push_back(place + ": " + std::to_string(mended) + " elements are not finite; they are taken as zero" +
-                          (attribute.starts_with("TEXCOORD_") ? "" : ", and made from the triangles"));
+      warnings_.push_back(place + ": " + std::to_string(mended) + " elements are not finite; they are taken as " +
+                          (is_white       ? "white"
+                           : is_direction ? "zero, and made from the triangles"
+                                          : "zero"));
     }
     return values;
   }
@@ -157,6 +163,8 @@ class PrimitiveReader {
       target.uv1 = coordinates("TEXCOORD_1", geometry.uv1);
       if (!geometry.colors.empty()) {
         target.colors = colors(primitive_.targets[t], owner, 0);
+      } else if (primitive_.targets[t].contains("COLOR_0")) {
+        warnings_.push_back(owner + ".COLOR_0: the primitive has no colours that it could change; it is left out");
       }
       geometry.morph_targets.push_back(std::move(target));
     }
@@ -189,7 +197,8 @@ class PrimitiveReader {
     for (std::size_t vertex = 0; vertex < *vertex_count_ && sets > 0; ++vertex) {
       double sum = 0;
       for (std::size_t k = 0; k < 4 * sets; ++k) {
-        const float weight = weights[k / 4][4 * vertex + k % 4];
+        float weight = weights[k / 4][4 * vertex + k % 4];
+        weight = weight < 0 && weight > -kRounding ? 0 : weight;
         if (weight < 0) {
           throw Error(ErrorKind::input, place_ + ".attributes.WEIGHTS_" + std::to_string(k / 4),
                       "vertex " + std::to_string(vertex) + " has a negative weight",

@@ -285,6 +285,9 @@ std::vector<PunctualLight> make_lights(const GltfDocument& document, const std::
     // Scale changes neither intensity nor range (KHR_lights_punctual, "Light shared properties").
     light.intensity = to_float(Vec3d{from.color[0], from.color[1], from.color[2]} * from.intensity);
     const float most = std::max({light.intensity.x, light.intensity.y, light.intensity.z});
+    if (std::min({light.intensity.x, light.intensity.y, light.intensity.z}) < 0) {
+      warnings.push_back("light '" + light.name + "': its intensity is negative, and was taken as 0");
+    }
     if (most > kMostLight && is_finite(light.intensity)) {
       warnings.push_back("light '" + light.name + "': its intensity is above 1e30, which is the most, and was clamped");
       light.intensity = {std::min(light.intensity.x, kMostLight), std::min(light.intensity.y, kMostLight),

@@ -61,15 +61,19 @@ int TextureTable::picture_of_image(int image) {
     index = static_cast<int>(pictures_.size());
     pictures_.push_back({image, "", {}});
   } else if (!source.uri.empty()) {
+    const std::string place = image_place(document_, image);
+    const bool is_elsewhere = source.uri.find("://") != std::string::npos;  // in the web, or on another machine
     const std::string path =
-        resolve_uri(document_.path, document_.data_roots, source.uri, image_place(document_, image));
+        is_elsewhere ? bounded(source.uri, 200) : resolve_uri(document_.path, document_.data_roots, source.uri, place);
     std::error_code unknown;
-    if (!std::filesystem::exists(path, unknown)) {
+    if (is_elsewhere || !std::filesystem::exists(path, unknown)) {
       if (!allow_missing_) {
-        throw Error(ErrorKind::input, image_place(document_, image), "there is no picture '" + path + "'",
-                    "bring it there, or give `allow-missing` to show the scene without it");
+        throw Error(ErrorKind::input, place, "there is no picture '" + path + "'",
+                    is_elsewhere ? "bring it beside the scene and use its name, or give `allow-missing` to show the "
+                                   "scene without it"
+                                 : "bring it there, or give `allow-missing` to show the scene without it");
       }
-      missing_.push_back(image_place(document_, image) + ": there is no picture '" + path + "'");
+      missing_.push_back(place + ": there is no picture '" + path + "'");
       return picture_by_image_[image] = -1;
     }
     const auto [it, is_new] = picture_by_path_.try_emplace(path, static_cast<int>(pictures_.size()));

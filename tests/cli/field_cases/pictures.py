@@ -137,6 +137,19 @@ def exr_cube_map(bench):
     return bench.refused(_ball(bench, "env-exr/cube.exr")[0], "cube map")
 
 
+def cross_of_a_cube(bench):
+    "six faces of 4 x 3 or 3 x 4 places, the corners empty: refused as a cube map"
+    for columns, rows in ((4, 3), (3, 4)):
+        row_of_all = 1  # of both forms; beside it the second column
+        light = {c: lambda x, y, i=i: 0.2 + 0.1 * i + (x + y) / 99 if x // 8 == 1 or y // 8 == row_of_all else 0 for i, c in enumerate("RGB")}
+        window = (0, 0, 8 * columns - 1, 8 * rows - 1)
+        bench.write("cross.exr", _exr(window, window, light))
+        good, got = bench.refused(_ball(bench, "cross.exr")[0], "cube map")
+        if not good:
+            return False, f"{columns} x {rows}: {got}"
+    return True, got
+
+
 def exr_of_depth_alone(bench):
     "refused: Z is no light"
     return bench.refused(_ball(bench, bench.fault("env_only_Z.exr"))[0], "none of which are its light")

@@ -6,6 +6,8 @@ import json
 import math
 import struct
 
+import harness
+
 
 def _same(bench, scene, other, flip, *options):
     """Whether FLIP between the pictures of two scenes is below a number."""
@@ -138,6 +140,40 @@ def morphed_colours(bench):
     return g > 0.02 and g > 3 * max(r, b), f"{r:.4f} {g:.4f} {b:.4f}"
 
 
+def _with_values(gltf, *arrays):
+    """The numbers of accessors that were added for arrays of floats, each of four elements."""
+    added = []
+    for values in arrays:
+        data = struct.pack(f"<{len(values)}f", *values)
+        gltf["buffers"].append({"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()})
+        gltf["bufferViews"].append({"buffer": len(gltf["buffers"]) - 1, "byteLength": len(data)})
+        gltf["accessors"].append({"bufferView": len(gltf["bufferViews"]) - 1, "componentType": 5126, "count": 4,
+                                  "type": {8: "VEC2", 12: "VEC3", 16: "VEC4"}[len(values)]})
+        added.append(len(gltf["accessors"]) - 1)
+    return added
+
+
+def morphed_second_coordinates(bench):
+    "weight 1 of a target of TEXCOORD_1, by which the picture is read, moves from its red half to its green one"
+    bench.write("halves.png", harness.png(16, 16, lambda x, y: (255, 0, 0) if x < 8 else (0, 255, 0)))
+    gltf = _quad(images=[{"uri": "halves.png"}], textures=[{"source": 0}])
+    base, target = _with_values(gltf, [0.25, 0.5] * 4, [0.5, 0] * 4)
+    gltf["meshes"][0].update(weights=[1])
+    gltf["meshes"][0]["primitives"][0].update(targets=[{"TEXCOORD_1": target}])
+    gltf["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = base
+    gltf["materials"][0].update(emissiveFactor=[1, 1, 1], emissiveTexture={"index": 0, "texCoord": 1})
+    return bench.near(_middle_of(bench, gltf)[1], (0, 1, 0), 0.01)
+
+
+def morphed_colours_without_colours(bench):
+    "a target of COLOR_0 of a primitive that has none, which glTF 3.7.2.2 forbids: drawn, and said"
+    gltf = _quad()
+    (target,) = _with_values(gltf, [0, -1, -1, 0] * 4)
+    gltf["meshes"][0].update(weights=[1])
+    gltf["meshes"][0]["primitives"][0].update(targets=[{"COLOR_0": target}])
+    return _said(bench, gltf, "targets[0].COLOR_0")
+
+
 # Files that other programs draw.
 
 
@@ -157,6 +193,51 @@ def a_normal_that_is_no_number(bench):
     told = "1 elements are not finite" in result.stderr
     strict, line = bench.refused(bench.run_program("scene", scene, "--strict"), "NORMAL")
     return picture is not None and told and strict, f"{bench.last_line(result)}; strict: {line}"
+
+
+def a_colour_that_is_no_number(bench):
+    "drawn, with a warning; the others stay as they are"
+    gltf = _quad()
+    (colors,) = _with_values(gltf, [1, 1, 1, 1, math.nan, 1, 1, 1] + [1, 1, 1, 1] * 2)
+    gltf["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = colors
+    return _said(bench, gltf, "COLOR_0: 1 elements are not finite")
+
+
+def weights_of_rounding(bench):
+    "weights of 1 and -1e-7, as programs round them: drawn, by the first joint"
+    gltf = _quad()
+    joints, weights = _with_values(gltf, [0] * 16, [1, -1e-7, 0, 0] * 4)
+    gltf["accessors"][joints].update(componentType=5121)  # a float of 0 is four bytes of 0
+    gltf["meshes"][0]["primitives"][0]["attributes"].update(JOINTS_0=joints, WEIGHTS_0=weights)
+    gltf["nodes"][0]["skin"] = 0
+    gltf["nodes"].append({"translation": [0, 0, -4]})
+    gltf.update(scenes=[{"nodes": [0, 1, 2]}], skins=[{"joints": [2]}])
+    result, pixel = _middle_of(bench, gltf)
+    return pixel == (0.5, 0.5, 0.5), f"{pixel} {bench.last_line(result)}"
+
+
+def a_backslash_by_its_number(bench):
+    "tex%5Cgreen.png is tex/green.png: a warning, as of the backslash itself"
+    gltf = json.loads(bench.scene("refused/backslash.gltf").read_text())
+    (bench.folder / "tex").mkdir(exist_ok=True)
+    (bench.folder / "tex/green.png").write_bytes(bench.scene("refused/tex/green.png").read_bytes())
+    gltf["images"][0]["uri"] = "tex%5Cgreen.png"
+    path = bench.write("number.gltf", json.dumps(gltf))
+    report = bench.run_program("scene", path)
+    return report.returncode == 0 and "backslash" in report.stdout, bench.last_line(report)
+
+
+def pictures_on_other_machines(bench):
+    "a drive, a file: and a web address: missing pictures, refused and allowed as those that are not there"
+    gltf = json.loads(bench.scene("refused/missing.gltf").read_text())
+    for uri in ("C:\\Users\\me\\green.png", "C:/Users/me/green.png", "file:///C:/Users/me/green.png", "https://example.com/green.png"):
+        gltf["images"][0]["uri"] = uri
+        path = bench.write("elsewhere.gltf", json.dumps(gltf))
+        refused, line = bench.refused(bench.render(path)[0], "no picture", "green.png", "--allow-missing")
+        result, picture = bench.render(path, "--spp", "1", "--allow-missing")
+        if not refused or picture is None or "no picture" not in result.stderr:
+            return False, f"{uri}: {line}; allowed: {bench.last_line(result)}"
+    return True, line
 
 
 def a_backslash_in_a_uri(bench):
@@ -195,13 +276,14 @@ def equal_key_times(bench):
 
 
 def extensions_that_change_no_picture(bench):
-    "required variants, XMP and visibility: drawn, named in a warning; refused under --strict"
-    names = ["KHR_materials_variants", "KHR_xmp_json_ld", "KHR_xmp", "KHR_node_visibility"]
+    "required variants, XMP, visibility, behaviours and avatars: drawn, named in a warning; refused under --strict"
+    names = ["KHR_materials_variants", "KHR_xmp_json_ld", "KHR_xmp", "KHR_node_visibility", "KHR_interactivity", "VRMC_vrm",
+             "KHR_physics_rigid_bodies", "AGI_articulations"]
     for name in names:
         good, got = _said(bench, _quad(extensionsUsed=[name], extensionsRequired=[name]), name)
         if not good:
             return False, f"{name}: {got}"
-    return True, "all four"
+    return True, f"all {len(names)}"
 
 
 def hidden_nodes(bench):
@@ -239,6 +321,17 @@ def lamps_of_1e38(bench):
     gltf["scenes"][0]["nodes"].append(2)
     result, pixel = _middle_of(bench, gltf)
     return all(map(math.isfinite, pixel)) and "intensity is above 1e30" in result.stderr, f"{pixel} {bench.last_line(result)}"
+
+
+def lamps_of_less_than_nothing(bench):
+    "an intensity of -5: no light, and said"
+    lamp = {"type": "point", "intensity": -5}
+    gltf = _quad(extensionsUsed=["KHR_lights_punctual"], extensions={"KHR_lights_punctual": {"lights": [lamp]}})
+    gltf["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = [1, 1, 1, 1]
+    gltf["nodes"].append({"translation": [0, 0, -3.9], "extensions": {"KHR_lights_punctual": {"light": 0}}})
+    gltf["scenes"][0]["nodes"].append(2)
+    result, pixel = _middle_of(bench, gltf)
+    return pixel == (0.5, 0.5, 0.5) and "intensity is negative" in result.stderr, f"{pixel} {bench.last_line(result)}"
 
 
 def emission_of_1e38(bench):
