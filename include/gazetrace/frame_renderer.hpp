@@ -168,6 +168,11 @@ std::vector<std::string> density_picture_files(const FoveationSettings& settings
 SamplingMap planned_sampling_map(const FoveationSettings& settings, const FrameRequest& request, std::uint64_t seed,
                                  int threads = 0);
 
+// Its rates in proportion to the place where the eye looks, which has 1: of densities at each pixel's centre, of
+// regions by what a pixel of the region expects. 1 everywhere without gaze.
+ImageGray planned_density(const FoveationSettings& settings, const FrameRequest& request, std::uint64_t seed,
+                          int threads = 0);
+
 // Samples a pixel of such a frame on average, and where the eye looks; twice the same without gaze.
 struct PlannedRates {
   double mean_spp = 0, most_spp = 0;

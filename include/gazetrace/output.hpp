@@ -135,6 +135,9 @@ WrittenExr write_frame_exr(const std::string& path, const Frame& frame, const Im
                            const FrameLayers& layers = {});
 WrittenFile write_sampling_map_exr(const std::string& path, const SamplingMap& map, const ImageGray* eccentricity_deg,
                                    const FrameWindow& window = {});
+// One channel, Y, in 32-bit floats: for other renderers, and for DensitySampling::picture_files.
+WrittenFile write_density_exr(const std::string& path, const ImageGray& density, std::int32_t frame,
+                              const FrameWindow& window = {});
 // Writes a PNG, JPEG, TIFF or DPX, by the suffix, with OpenImageIO; the file is complete or absent. With `alpha`, which
 // PNG and TIFF hold, the colours of the image are straight: not multiplied by it.
 WrittenFile write_display_image(const std::string& path, const DisplayImage& image, const FrameHeader& header,

@@ -187,4 +187,16 @@ WrittenFile write_sampling_map_exr(const std::string& path, const SamplingMap& m
   return picture.write(path, 0);
 }
 
+WrittenFile write_density_exr(const std::string& path, const ImageGray& density, std::int32_t frame,
+                              const FrameWindow& window) {
+  ExrSettings settings;
+  settings.compression = "zip";
+  settings.zip_level = kMapZipLevel;
+  ExrPicture picture(density.width_px, density.height_px, settings, 1);
+  picture.place(window);
+  picture.begin_layer("density");
+  picture.add_float("Y", density);
+  return picture.write(path, frame);
+}
+
 }  // namespace gazetrace

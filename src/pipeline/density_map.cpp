@@ -2,6 +2,9 @@
 // Densities that come from outside: pictures that say where the samples of a frame go.
 #include <algorithm>
 #include <filesystem>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "core/image_io.hpp"
 #include "gazetrace/error.hpp"
@@ -36,6 +39,35 @@ SamplingMap planned_sampling_map(const FoveationSettings& settings, const FrameR
   const ImageGray density = read_density_picture(settings, request.frame);
   context.density = density.empty() ? nullptr : &density;
   return make_sampling_map(settings, request.view, request.gaze_direction_render, context);
+}
+
+ImageGray planned_density(const FoveationSettings& settings, const FrameRequest& request, std::uint64_t seed,
+                          int threads) {
+  MapContext context = map_context(request, seed, threads);
+  const ImageGray picture = read_density_picture(settings, request.frame);
+  context.density = picture.empty() ? nullptr : &picture;
+  if (!picture.empty() || (traits_of(settings.sampling).needs_gaze && request.gaze_direction_render)) {
+    const Vec3d ahead{0, 0, -1};  // a picture needs no gaze
+    if (std::optional<ImageGray> density =
+            density_image(settings, request.view, request.gaze_direction_render.value_or(ahead), context)) {
+      return *std::move(density);
+    }
+  }
+  ImageGray density(request.width_px, request.height_px, 1);
+  if (const RegionSampling* const regions = regions_of(settings.sampling);
+      regions != nullptr && request.gaze_direction_render) {
+    FoveationSettings own_counts = settings;
+    own_counts.spp.reset();
+    const SamplingMap map = make_sampling_map(own_counts, request.view, request.gaze_direction_render, context);
+    std::vector<float> of_region;
+    for (const MapRegion& region : map.regions) {
+      const double pixels = std::max(1.0, static_cast<double>(region.pixels));
+      of_region.push_back(static_cast<float>(region.nominal_samples / pixels / regions->samples[0]));
+    }
+    std::transform(map.region.pixels.begin(), map.region.pixels.end(), density.pixels.begin(),
+                   [&](std::uint8_t region) { return of_region[region]; });
+  }
+  return density;
 }
 
 PlannedRates planned_rates(const FoveationSettings& settings, const FrameRequest& request, std::uint64_t seed,

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads uncompressed EXR files of scan lines by the published layout of the format, with nothing but Python."""
+"""Reads EXR files of scan lines, uncompressed or by zip, by the published layout of the format, with nothing but Python."""
 
+import itertools
 import struct
+import zlib
 
+NONE, ZIP = b"\0", b"\3"
+ROWS_OF_A_BLOCK = {NONE: 1, ZIP: 16}
 SIZES = {0: (4, "I"), 1: (2, "e"), 2: (4, "f")}  # uint, half, float
 
 
@@ -15,12 +19,28 @@ class Exr:
         if magic != 20000630 or self.version & 0x1200:
             raise ValueError(f"{path} is no EXR of one part in scan lines")
         self.attributes, at = self._header(8)
-        if self.attributes["compression"][1] != b"\0":
-            raise ValueError(f"{path} is compressed")
+        compression = self.attributes["compression"][1]
+        if compression not in ROWS_OF_A_BLOCK:
+            raise ValueError(f"{path} is compressed by other than zip")
         x0, y0, x1, y1 = struct.unpack("<4i", self.attributes["dataWindow"][1])
         self.width, self.height = x1 - x0 + 1, y1 - y0 + 1
         self.types = self._types(self.attributes["channels"][1])
-        self._rows = struct.unpack_from(f"<{self.height}Q", self.data, at)
+        size = self.width * sum(SIZES[kind][0] for kind in self.types.values())
+        self._rows, blocks = [], -(-self.height // ROWS_OF_A_BLOCK[compression])
+        for place in struct.unpack_from(f"<{blocks}Q", self.data, at):
+            count = min(ROWS_OF_A_BLOCK[compression], self.height - len(self._rows))
+            block = self._block(place, count * size)
+            self._rows += [block[i * size:(i + 1) * size] for i in range(count)]
+
+    def _block(self, place, whole):
+        """Rows of pixels. Of zip: bytes as differences of those before, all even ones before all odd ones."""
+        (size,) = struct.unpack_from("<i", self.data, place + 4)
+        block = self.data[place + 8:place + 8 + size]
+        if size == whole:
+            return block
+        sums = bytes(itertools.accumulate(zlib.decompress(block), lambda a, b: (a + b - 128) % 256))
+        half = (whole + 1) // 2
+        return bytes(byte for pair in itertools.zip_longest(sums[:half], sums[half:]) for byte in pair if byte is not None)
 
     def _header(self, at):
         attributes = {}
@@ -54,10 +74,10 @@ class Exr:
 
     def channel(self, name, bits=False):
         """Rows of the channel, from the top; the bits of floats as whole numbers where `bits`."""
-        offset = 8
+        offset = 0
         for other, kind in sorted(self.types.items()):
             if other == name:
                 break
             offset += SIZES[kind][0] * self.width
         letter = "I" if bits else SIZES[self.types[name]][1]
-        return [struct.unpack_from(f"<{self.width}{letter}", self.data, row + offset) for row in self._rows]
+        return [struct.unpack_from(f"<{self.width}{letter}", row, offset) for row in self._rows]

@@ -15,6 +15,8 @@
 #include "cli/model_gain_text.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/foveation.hpp"
+#include "gazetrace/frame_renderer.hpp"
+#include "gazetrace/output.hpp"
 #include "gazetrace/resolve.hpp"
 
 namespace gazetrace {
@@ -23,6 +25,7 @@ namespace {
 struct PlanArguments {
   Job job;
   std::string save_camera;
+  std::string sample_maps;
   std::uint32_t chunks = 0;
   std::string rate_from;
   bool counts = false;
@@ -138,33 +141,55 @@ void print_chunks(const std::vector<FrameChunk>& chunks, const std::optional<dou
 }
 
 /// Before anything is loaded or warned of, so that a refusal is the only line.
-void check_counts_are_known(const FoveationSettings& foveation) {
+void check_counts_are_known(const FoveationSettings& foveation, const char* option) {
   if (looks_first(foveation.sampling)) {
     throw Error(ErrorKind::usage, "`sampling`", "counts that a pilot decides are known once it is rendered",
                 "give another one, or render and read timing.csv");
   }
   if (foveation.target.is_given()) {
-    throw Error(ErrorKind::usage, "`counts`", "counts that follow from a target are known once it is rendered",
+    throw Error(ErrorKind::usage, fmt::format("`{}`", option),
+                "counts that follow from a target are known once it is rendered",
                 "give `spp`, or render and read timing.csv");
   }
+}
+
+std::vector<std::string> sample_map_files(const std::string& pattern, const FramePlan& plan) {
+  std::vector<std::string> files;
+  for (const FrameRequest& request : pattern.empty() ? std::vector<FrameRequest>() : plan.frames) {
+    files.push_back(frame_file_name(pattern, request.frame, plan.frames.size() > 1));
+  }
+  return files;
 }
 
 int run_plan(const PlanArguments& arguments) {
   const JobSettings& asked = arguments.job.settings;
   check_job(arguments.job);
   if (asked.scene.empty() && asked.camera_path.empty() && !asked.camera_from_gaze && !asked.eye && !arguments.counts &&
-      !arguments.model_gain && arguments.chunks == 0) {
+      !arguments.model_gain && arguments.chunks == 0 && arguments.sample_maps.empty()) {
     throw Error(ErrorKind::usage, "", "no scene and no camera were given",
                 "name a scene, or give --camera-path or --eye and --target");
   }
   if (arguments.counts && arguments.chunks == 0) {
-    check_counts_are_known(asked.foveation);
+    check_counts_are_known(asked.foveation, "counts");
+  }
+  if (!arguments.sample_maps.empty()) {
+    check_counts_are_known(asked.foveation, "write-sample-maps");
+    if (!arguments.sample_maps.ends_with(".exr")) {
+      throw Error(ErrorKind::usage, "`write-sample-maps`", "'" + arguments.sample_maps + "' is no name of an EXR",
+                  "give one that ends with .exr");
+    }
   }
   ResolveOptions resolving;
   resolving.scope = ResolveScope::plan;
   const ResolvedJob resolved = resolve(arguments.job, resolving);
   const JobSettings& job = resolved.job.settings;
-  arguments.json.check({arguments.save_camera}, job_files(job));
+  const std::vector<std::string> sample_maps = sample_map_files(arguments.sample_maps, resolved.plan);
+  std::vector<std::string> outputs = sample_maps;
+  outputs.push_back(arguments.save_camera);
+  if (has_frame_number(arguments.sample_maps)) {
+    outputs.push_back(arguments.sample_maps);  // by the name that asks for it, so that it is not taken for an input
+  }
+  arguments.json.check(outputs, job_files(job));
   if (!arguments.save_camera.empty()) {
     std::vector<FramePose> frames;
     for (const FrameRequest& request : resolved.plan.frames) {
@@ -172,11 +197,23 @@ int run_plan(const PlanArguments& arguments) {
     }
     write_camera_path(frames, job.camera_read.rotation_order, arguments.save_camera);
   }
+  for (std::size_t i = 0; i < sample_maps.size(); ++i) {
+    const FrameRequest& request = resolved.plan.frames[i];
+    write_density_exr(sample_maps[i], planned_density(job.foveation, request, job.trace.seed, job.threads),
+                      request.frame, request.window);
+  }
   print_warnings(resolved.warnings);
   for (const auto& [name, text] : resolved.decisions) {
     if (name.starts_with("replaced ") || name == "accumulate" || (name == "sampling" && resolved.gaze)) {
       std::fprintf(stderr, "%s: %s\n", name.c_str(), with_flags(text).c_str());
     }
+  }
+  if (!sample_maps.empty() && !arguments.counts && !arguments.model_gain && arguments.chunks == 0) {
+    const std::string last = sample_maps.size() > 1 ? " to " + sample_maps.back() : "";
+    arguments.json.print(fmt::format("{}{}: {} sample maps\n", sample_maps.front(), last, sample_maps.size()), [&] {
+      return nlohmann::ordered_json{{"sample_maps", sample_maps}}.dump(2) + "\n";
+    });
+    return exit_done;
   }
   if (arguments.model_gain) {
     const double fps = static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator);
@@ -235,6 +272,11 @@ Command add_plan_command(CLI::App& app, const Invocation& /*invocation*/) {
          "stamps are the video times of the frames' middles: read it again with --camera-keep-time; replaces a file "
          "with --overwrite only")
       ->type_name("FILE");
+  app.add_option(
+         "--write-sample-maps", arguments->sample_maps,
+         "Writes where the samples of every frame go, for other renderers: an EXR with one channel, 1 where the "
+         "eye looks, named as -o names pictures; needs no scene; replaces files with --overwrite only")
+      ->type_name("PATTERN");
   add_json_option(app, arguments->json, arguments->job.settings.overwrite);
   return {[arguments] { return run_plan(*arguments); },
           [arguments](const std::string& path) { read_job_config(arguments->job, "plan", path); }};
