@@ -124,7 +124,7 @@ class Blender(harness.CliTest):
         values = []
         for seed in ("1", "2"):
             self.run_ok("render", scene, "-o", "patch.exr", "--overwrite", "--size", "64x36", "--fps", "24", "--frames", "2", "--spp", "64",
-                        "--sampling", "uniform", "--filter", "none", "--diffuse", "lambert", "--seed", seed, *options)
+                        "--exr-compression", "zip", "--sampling", "uniform", "--filter", "none", "--diffuse", "lambert", "--seed", seed, *options)
             green = Exr(self.folder / "patch.exr").channel("G")
             values.append([value for row in green[10:26] for value in row[20:44]])
         a, b = values

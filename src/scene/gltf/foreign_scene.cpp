@@ -22,15 +22,17 @@ struct ForeignKind {
   const char* way = "import it in Blender and export .glb";
 };
 
+constexpr const char* kImport = "make it one: gazetrace import FILE -o SCENE.glb";
+
 const std::vector<ForeignKind>& foreign_kinds() {
   static const std::vector<ForeignKind> kKinds{
-      {"USD", "PXR-USDC", "#usda", {".usd", ".usda", ".usdc", ".usdz"}},
-      {"FBX", "Kaydara FBX Binary", "FBXHeaderExtension", {".fbx"}},
+      {"USD", "PXR-USDC", "#usda", {".usd", ".usda", ".usdc", ".usdz"}, kImport},
+      {"FBX", "Kaydara FBX Binary", "FBXHeaderExtension", {".fbx"}, kImport},
       {"a Blender file",
        "BLENDER",
        "",
        {".blend"},
-       "open it in Blender and export .glb, or render it with the add-on (docs/blender.md)"},
+       "make it one: gazetrace import FILE -o SCENE.glb; or render it with the add-on (docs/blender.md)"},
       {"a Mitsuba scene", "", "<scene", {}, "export .glb from where it was made, or import it in Blender first"},
       {"a pbrt scene",
        "",
@@ -39,11 +41,11 @@ const std::vector<ForeignKind>& foreign_kinds() {
        "export .glb from where it was made, or import it in Blender first"},
       {"COLLADA", "", "<COLLADA", {".dae"}},
       {"X3D", "", "<X3D", {".x3d", ".wrl"}},
-      {"PLY", "ply\n", "", {".ply"}},
-      {"PLY", "ply\r", "", {}},
-      {"Alembic", "Ogawa", "", {".abc"}},
-      {"Wavefront OBJ", "", "mtllib ", {".obj"}},
-      {"STL", "", "", {".stl"}},
+      {"PLY", "ply\n", "", {".ply"}, kImport},
+      {"PLY", "ply\r", "", {}, kImport},
+      {"Alembic", "Ogawa", "", {".abc"}, kImport},
+      {"Wavefront OBJ", "", "mtllib ", {".obj"}, kImport},
+      {"STL", "", "", {".stl"}, kImport},
       {"3DS", "", "", {".3ds"}},
       {"a Maya scene", "", "//Maya ASCII", {".ma", ".mb"}, "export .glb from where it was made"},
       {"a 3ds Max scene", "", "", {".max"}, "export .glb from where it was made"},
