@@ -205,6 +205,9 @@ Conventions conclude_conventions(const RawGaze& raw, const GazeReadOptions& opti
   for (ReadingDoubt& doubt : judge_reading(raw, c, display)) {
     c.doubts.push_back(std::move(doubt));
   }
+  if (are_other_numbers_meant(raw)) {
+    c.doubts.clear();
+  }
   return c;
 }
 

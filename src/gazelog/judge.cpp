@@ -17,6 +17,7 @@ namespace {
 constexpr double kAboutOne = 1.6;     // beyond it nothing counts fractions of a display
 constexpr double kLargestAngle = 60;  // beyond it no eye turns, and no display is seen
 constexpr double kFewNegative = 0.05;
+constexpr double kLargestPercent = 105;
 constexpr std::size_t kMostLookedAt = 60'000;
 
 // Numbers about 1 that lie on both sides of 0.
@@ -163,9 +164,7 @@ class Judge {
 
   // Zeros in both axes that count as good, as loggers write what they do not know.
   void zeros() {
-    const bool is_known = std::any_of(raw_.faults.begin(), raw_.faults.end(),
-                                      [](const RawFault& fault) { return fault.code == "validity"; });
-    if (c_.zero_is_missing || is_known) {
+    if (c_.zero_is_missing) {
       return;
     }
     std::size_t zeros = 0;  // counted from the corner of the display
@@ -333,9 +332,14 @@ UnitReading read_unit(const RawRows& rows, const RawGaze& raw, const DisplayGeom
     const Vec2d mm{10 * display.width_cm, 10 * display.height_cm};
     reading.unit = PositionUnit::px;
     reading.evidence += fmt::format("; as degrees the eye would turn to {:.0f}", m.most());
+    const bool may_be_percent = m.x.low >= 0 && m.y.low >= 0 && m.most() <= kLargestPercent;
     const bool may_be_mm = lies_on(m, mm) && m.x.spread() > 0.4 * mm.x && m.x.spread() < 0.4 * px.x;
-    reading.is_plain = lies_on(m, px) && !may_be_mm;
-    if (may_be_mm) {
+    reading.is_plain = lies_on(m, px) && !may_be_mm && !may_be_percent;
+    if (may_be_percent) {
+      reading.doubt = ReadingDoubt{"position-unit", "the unit of x and y is undecided: pixels or per cent?",
+                                   m.in_words() + ", and a display has more pixels than a hundred",
+                                   "`unit` px (divide per cent by 100 first, for `unit` fraction)"};
+    } else if (may_be_mm) {
       reading.doubt = ReadingDoubt{"position-unit", "the unit of x and y is undecided: pixels or millimetres?",
                                    m.in_words() + ", and the display's size is known in both", "`unit` px or mm"};
     } else if (!reading.is_plain) {
@@ -349,6 +353,12 @@ UnitReading read_unit(const RawRows& rows, const RawGaze& raw, const DisplayGeom
 std::vector<ReadingDoubt> judge_reading(const RawGaze& raw, const Conventions& conventions,
                                         const DisplayGeometry& display) {
   return Judge(raw, conventions, display).doubts();
+}
+
+bool are_other_numbers_meant(const RawGaze& raw) {
+  return std::any_of(raw.faults.begin(), raw.faults.end(), [](const RawFault& fault) {
+    return fault.code == "validity" || fault.code == "sum-of-eyes" || fault.code == "look-alike";
+  });
 }
 
 void refuse_doubt(const RawGaze& raw, const ReadingDoubt& doubt, const GazeReadOptions& options) {

@@ -24,6 +24,9 @@ UnitReading read_unit(const RawRows& rows, const RawGaze& raw, const DisplayGeom
 std::vector<ReadingDoubt> judge_reading(const RawGaze& raw, const Conventions& conventions,
                                         const DisplayGeometry& display);
 
+// Whether a fault says that other rows or columns are the gaze: then these numbers leave nothing open.
+bool are_other_numbers_meant(const RawGaze& raw);
+
 // Empty where 90 % of the positions fit the unit and the origin under which they are read.
 std::optional<ReadingDoubt> doubt_position_unit(const RawGaze& raw, const Conventions& conventions,
                                                 const DisplayGeometry& display);

@@ -358,8 +358,13 @@ RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, con
   raw.clock = preamble.clock;
   raw.recording_geometry = preamble.geometry;
   raw.pixels_per_degree = preamble.pixels_per_degree;
-  if (preamble.is_scene_camera) {
-    raw.way_out = "`frame` scene-camera looks at it";
+  const std::string sign = style == ValidityStyle::any ? sign_of_scene_camera(table, plan) : "";
+  if (preamble.is_scene_camera || !sign.empty()) {
+    raw.way_out = sign.empty() ? "`frame` scene-camera looks at it"
+                               : fmt::format(
+                                     "column '{}' says so: map gaze onto the display, or look at it with `frame` "
+                                     "scene-camera",
+                                     sign);
     raw.kind = GazeKind::scene_camera;
   }
   raw.pupil_unit = plan.pupil_unit;

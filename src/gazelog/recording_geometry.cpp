@@ -150,7 +150,9 @@ std::optional<Concluded<DisplayGeometry>> conversion_display(const RawGaze& raw,
       return Concluded<DisplayGeometry>{DisplayGeometry{.width_px = static_cast<int>(raw.picture_px->x),
                                                         .height_px = static_cast<int>(raw.picture_px->y)}};
     }
-    return stated ? std::optional(Concluded<DisplayGeometry>{*stated, Evidence::header}) : std::nullopt;
+    return stated            ? std::optional(Concluded<DisplayGeometry>{*stated, Evidence::header})
+           : options.display ? std::optional(Concluded<DisplayGeometry>{*options.display, Evidence::option})
+                             : std::nullopt;
   }
   if (!options.display && !(options.eye_cm && stated)) {
     const std::optional<DisplayGeometry>& fallback = options.fallback_display;

@@ -211,7 +211,7 @@ bool overlaps_without_a_gap(const RawRows& rows, const BackwardStep& step, doubl
 
 void divide_at_restarts(RawGaze& raw, const Stamps& stamps) {
   constexpr std::int64_t kLeastBackNs = 1'000'000'000;  // or less, where the rows before it leave no room
-  constexpr std::size_t kRowsOfPart = 500;
+  constexpr std::size_t kRowsOfPart = 100;
   const std::vector<BackwardStep>& steps = stamps.backward;
   if (steps.empty() || steps.size() > std::max<std::size_t>(1, raw.rows.size() / kRowsOfPart) ||
       !raw.recordings.empty()) {

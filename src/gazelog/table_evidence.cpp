@@ -131,6 +131,19 @@ void find_other_things(const DelimitedTable& table, const ColumnPlan& plan, RawG
   }
 }
 
+std::string sign_of_scene_camera(const DelimitedTable& table, const ColumnPlan& plan) {
+  const ColumnHeading& x = table.headings[plan.sources.front().x];
+  const std::string name = letters_and_digits(x.text);
+  for (const std::string_view word : {"normpos", "scenecam", "worldcam", "fieldcam", "fielddata", "scenex"}) {
+    if (plan.kind == GazeKind::screen && name.find(word) != std::string::npos) {
+      return x.text;
+    }
+  }
+  // Pupil Labs' glasses say whether they are worn.
+  const auto worn = plan.kind == GazeKind::screen && plan.unit != PositionUnit::deg ? table.find("worn") : std::nullopt;
+  return worn ? table.headings[*worn].text : "";
+}
+
 PositionOrigin origin_in_column(const GazeFile& file, const DelimitedTable& table, RawGaze& raw) {
   const auto column = table.find_any({"coordinate_system", "coordinate_origin", "screen_origin", "origin"});
   TableRows rows(file, table, table.headings.size());

@@ -18,6 +18,9 @@ void find_sum_of_eyes(const GazeFile& file, const DelimitedTable& table, const C
 // Adds a fault where the columns beside those of the gaze say that they are the head's rotation or places in space.
 void find_other_things(const DelimitedTable& table, const ColumnPlan& plan, RawGaze& raw);
 
+// The column by which a table of one's own says that its gaze lies on the picture of a camera on the head; empty: none.
+std::string sign_of_scene_camera(const DelimitedTable& table, const ColumnPlan& plan);
+
 // The origin that a column of the first row names; automatic where there is none, or none that is known.
 PositionOrigin origin_in_column(const GazeFile& file, const DelimitedTable& table, RawGaze& raw);
 

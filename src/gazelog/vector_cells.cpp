@@ -85,11 +85,13 @@ void split_vector_cells(GazeFile& file) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::size_t count = components_of(cells[i]).size();
     constexpr std::size_t kList = 12;
-    if (count > kList && i + 1 < cells.size() && components_of(cells[i + 1]).size() == count) {
-      throw Error(
-          ErrorKind::input, place_of(file, table.lines_above + 1),
-          fmt::format("a cell of this row holds a list of {} numbers, as PsychoPy and jsPsych write a trial", count),
-          "write a row for each sample, such as with pandas: explode()");
+    const std::string_view cell = trim(cells[i]);
+    const bool has_objects = cell.starts_with("[{") || cell.starts_with("\"[{");
+    if (has_objects || (count > kList && i + 1 < cells.size() && components_of(cells[i + 1]).size() == count)) {
+      throw Error(ErrorKind::input, place_of(file, table.lines_above + 1),
+                  fmt::format("a cell of this row holds a list of {}, as PsychoPy and jsPsych write a trial",
+                              has_objects ? "samples" : fmt::format("{} numbers", count)),
+                  "write a row for each sample, such as with pandas: explode()");
     }
     components[i] = count >= kLeastComponents && count <= kMostComponents ? count : 0;
     any = any || components[i] > 0;

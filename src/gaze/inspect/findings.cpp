@@ -46,8 +46,8 @@ class Doctor {
 
   void examine() {
     faults_of_reading();
-    time_unit();
     bursts();
+    time_unit();
     const bool unit_is_wrong = doubts_of_reading();
     recurring_place();
     mark_in_one_axis();
@@ -149,8 +149,14 @@ class Doctor {
 
   // Stamps that were taken when a buffer was written: runs of steps that are far shorter than the others.
   void bursts() {
-    const double step_ns = report_.timing.median_rate_hz > 0 ? 1e9 / report_.timing.median_rate_hz : 0;
+    // Where most rows stand in bursts, the median step is that within them.
+    const double median_ns = report_.timing.median_rate_hz > 0 ? 1e9 / report_.timing.median_rate_hz : 0;
+    const double mean_ns =
+        static_cast<double>(report_.span_ns) / static_cast<double>(std::max<std::size_t>(1, log_.samples.size()));
+    const bool are_packets = mean_ns > 4 * median_ns;
+    const double step_ns = are_packets ? mean_ns : median_ns;
     constexpr std::size_t kShortestRun = 4;
+    constexpr std::size_t kLongestPacket = 64;
     std::size_t runs = 0;
     std::size_t rows = 0;
     std::size_t run = 0;
@@ -164,7 +170,8 @@ class Doctor {
       }
       run = is_short ? run + 1 : 0;
     }
-    if (runs == 0 || (runs == 1 && rows * 200 < log_.samples.size())) {
+    if (runs == 0 || (runs == 1 && rows * 200 < log_.samples.size()) ||
+        (are_packets && (runs < 10 || rows > kLongestPacket * runs))) {  // else they are parts between pauses
       return;
     }
     const double seconds = static_cast<double>(report_.span_ns) * 1e-9;
@@ -196,7 +203,7 @@ class Doctor {
 
   void time_unit() {
     const double rate = report_.timing.median_rate_hz;
-    if (log_.samples.size() < 10 || !(rate > 0)) {
+    if (log_.samples.size() < 10 || !(rate > 0) || has_finding({"bursts"})) {
       return;
     }
     const double nominal = log_.nominal_rate_hz;

@@ -390,6 +390,9 @@ class AscReader {
 
   RawSample eye_sample(std::int64_t t_ns, Eye eye, std::size_t column, std::string_view flags) {
     RawSample sample = position_row(t_ns, line_, eye, {number(column), number(column + 1)}, number(column + 2));
+    if (sample.at.x == 0 && sample.at.y == 0 && number(column + 2) == 0) {
+      return missing_row(t_ns, line_, eye);  // edf2asc was told to write missing values as 0
+    }
     // What the tracker says of its own sample is not believed where the user says that there is none.
     const auto both_are = [&](double value) { return sample.at.x == value && sample.at.y == value; };
     const auto is_given = [&](double mark) {

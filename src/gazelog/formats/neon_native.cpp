@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pupil Labs Neon's own recording: `gaze ps1.raw`, little-endian float32 pairs in pixels of the 1600 x 1200 scene
-// camera from the top left; `gaze ps1.time`, one uint64 for each pair, in nanoseconds from 1970; `worn ps1.raw`, one
-// byte for each pair. Directions need the lens: scene_camera.json beside them, as Pupil Cloud gives it.
+// Pupil Labs Neon's and Invisible's own recording: `gaze ps1.raw`, little-endian float32 pairs in pixels of the scene
+// camera from the top left, of which Neon's has 1600 x 1200 and Invisible's 1088 x 1080; `gaze ps1.time`, one uint64
+// for each pair, in nanoseconds from 1970; `worn ps1.raw`, one byte for each pair. Directions need the lens:
+// scene_camera.json beside them, as Pupil Cloud gives it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -81,8 +82,11 @@ RawGaze read_gaze_neon_native(const GazeFile& file, const GazeReadOptions& optio
   raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
   raw.declared.time_column = {"gaze " + part + ".time", Evidence::format, {}};
   raw.declared.time_exponent = {0, Evidence::format, {}};
-  if (const std::string info = sibling(file.path, "info.json"); exists(info)) {
-    raw.nominal_rate_hz = JsonLeaves(read_text_file(info), info).number("gaze_frequency").value_or(0);
+  bool is_invisible = false;
+  if (const std::string path = sibling(file.path, "info.json"); exists(path)) {
+    const JsonLeaves info(read_text_file(path), path);
+    raw.nominal_rate_hz = info.number("gaze_frequency").value_or(0);
+    is_invisible = info.has("glasses_serial_number") && !info.has("module_serial_number");
   }
   const std::size_t count = bytes.size() / 8;
   for (std::size_t i = 0; i < count; ++i) {
@@ -114,8 +118,9 @@ RawGaze read_gaze_neon_native(const GazeFile& file, const GazeReadOptions& optio
     raw.declared.lens = load_scene_lens(lens_path);
     return raw;
   }
-  raw.picture_px = Vec2d{1600, 1200};
-  add_note(raw, "picture size", "1600x1200 px", Evidence::format);
+  raw.picture_px = is_invisible ? Vec2d{1088, 1080} : Vec2d{1600, 1200};
+  add_note(raw, "picture size", is_invisible ? "1088x1080 px" : "1600x1200 px",
+           is_invisible ? Evidence::sidecar : Evidence::format, is_invisible ? "info.json is Invisible's" : "");
   declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::format, columns}, file.path);
   return raw;
 }

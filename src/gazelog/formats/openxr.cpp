@@ -46,14 +46,19 @@ struct PoseColumns {
   Columns<3> direction, gaze_position, head_position;
   Columns<4> head;
   OptionalColumn time, sample_time, tracked, flags, confidence, space;
+  bool is_engines = false;  // a rotation, as Unity and Unreal call what OpenXR calls an orientation
 
   [[nodiscard]] bool has_gaze() const { return gaze[0] || (direction[0] && head[0]); }
 };
 
 PoseColumns find_columns(const DelimitedTable& table) {
   PoseColumns c;
-  c.gaze = find_group<4>(table, {"gaze orientation ", "gaze rotation ", "gaze pose orientation ",
-                                 "eye gaze orientation ", "gaze q", "gaze orientation q"});
+  c.gaze = find_group<4>(
+      table, {"gaze orientation ", "gaze pose orientation ", "eye gaze orientation ", "gaze q", "gaze orientation q"});
+  if (!c.gaze[0]) {
+    c.gaze = find_group<4>(table, {"gaze rotation ", "eye gaze rotation "});
+    c.is_engines = c.gaze[0].has_value();
+  }
   if (!c.gaze[0]) {
     c.direction =
         find_group<3>(table, {"gaze direction ", "gaze dir ", "gaze forward ", "gaze vector ", "eye direction "});
@@ -80,6 +85,13 @@ std::array<double, N> values(TableRows& rows, const Columns<N>& columns) {
     found[i] = rows.number(columns[i]);
   }
   return found;
+}
+
+// Where a rotation of nothing looks to.
+Vec3d ahead_in(GazeAxes axes) {
+  return axes == GazeAxes::unreal                              ? Vec3d{1, 0, 0}
+         : axes == GazeAxes::gl || axes == GazeAxes::automatic ? Vec3d{0, 0, -1}
+                                                               : Vec3d{0, 0, 1};
 }
 
 Quatd inverse(const Quatd& q) {
@@ -247,7 +259,7 @@ RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
                                        : is_own_table ? Evidence::statistics
                                                       : Evidence::format,
                                        place);
-  const GazeAxes axes = is_own_table ? options.columns.axes : GazeAxes::gl;
+  const GazeAxes axes = is_own_table || c.is_engines ? options.columns.axes : GazeAxes::gl;
   const GazeAxes head_axes = options.columns.head_axes == GazeAxes::automatic ? axes : options.columns.head_axes;
   const bool has_head = c.head[0].has_value();
   std::vector<PosedGaze> gazes;  // of rows that state no space
@@ -279,7 +291,7 @@ RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
     const std::array<double, 4> q = values(rows, c.gaze);
     const std::array<double, 3> d = values(rows, c.direction);
     const Vec3d direction =
-        c.gaze[0] ? rotate(normalize(Quatd{q[0], q[1], q[2], q[3]}), {0, 0, -1}) : Vec3d{d[0], d[1], d[2]};
+        c.gaze[0] ? rotate(normalize(Quatd{q[0], q[1], q[2], q[3]}), ahead_in(axes)) : Vec3d{d[0], d[1], d[2]};
     if (c.gaze[0] ? is_rotation(q) : length(direction) > 0) {
       sample.at = direction;
       sample.validity = is_tracked(rows, c) ? GazeValidity::ok : GazeValidity::lost;
@@ -300,12 +312,20 @@ RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
     raw.warnings.push_back(
         fmt::format("{}: {} rows repeat the sample of the row before; left out", file.path, repeats));
   }
+  if (c.is_engines && axes == GazeAxes::automatic) {
+    const std::string problem = fmt::format(
+        "the axes of '{}' are undecided: a rotation of Unity looks along +z, of Unreal along +x, of OpenXR along -z, "
+        "and nothing in the numbers tells them apart",
+        table.headings[*c.gaze[0]].text);
+    raw.faults.push_back(
+        {"axes", place, problem, "give `axes` unity, unreal or gl", "`axes` unity, unreal or gl", problem});
+  }
   const std::size_t first = c.gaze[0] ? *c.gaze[0] : *c.direction[0];
   declare_directions(raw, {table.headings[first].text + ", ...", Evidence::header},
                      axes == GazeAxes::automatic ? GazeAxes::gl : axes,
-                     !is_own_table                 ? Evidence::format
-                     : axes == GazeAxes::automatic ? Evidence::statistics
-                                                   : Evidence::option,
+                     !is_own_table && !c.is_engines ? Evidence::format
+                     : axes == GazeAxes::automatic  ? Evidence::statistics
+                                                    : Evidence::option,
                      place);
   return raw;
 }
