@@ -93,9 +93,6 @@ struct GazeReadOptions {
   bool swap_xy = false;  // x and y are exchanged in the log
   bool flip_x = false;   // left and right are exchanged: u becomes 1 - u, direction x becomes -x
   bool flip_y = false;   // top and bottom likewise
-  // Numbers are written with a decimal comma although commas also separate the cells: the cells are joined again. Where
-  // tabs or semicolons separate the cells, decimal commas are understood without this.
-  bool decimal_comma = false;
   // What nothing states but the numbers decide against all rivals is taken; otherwise it is refused like what they
   // leave open.
   bool accepts_inferred = false;

@@ -12,8 +12,6 @@ namespace gazetrace {
 struct GazeFile {
   std::string path;  // for sidecars and messages
   std::string text;  // unpacked; UTF-8 without a byte-order mark, or the bytes of a binary format
-  // The columns whose numbers a decimal comma splits into two cells; empty: there are none.
-  std::vector<bool> fractions = {};
 };
 
 struct GazeFormat {

@@ -81,33 +81,6 @@ auto with_a_hint_of_the_format(const std::string& named, const GazeFile& file, c
   }
 }
 
-// Columns that decimal commas split, where the user says so or, where the log is only looked at, where they are seen.
-std::optional<RawFault> join_decimal_commas(GazeFile& file, const GazeReadOptions& options, Mending mending) {
-  if (!options.decimal_comma && mending == Mending::none) {
-    return std::nullopt;
-  }
-  DecimalCommas commas = find_decimal_commas(file);
-  using Status = DecimalCommas::Status;
-  if (commas.status == Status::none) {
-    return std::nullopt;
-  }
-  if (commas.status == Status::ambiguous) {
-    throw Error(
-        ErrorKind::input, file.path,
-        "rows hold more cells than there are columns, as with decimal commas or thousands separators between commas, "
-        "and cannot be told apart for certain",
-        "export again with decimal points, or with tabs or semicolons between the columns");
-  }
-  file.fractions = std::move(commas.fractions);
-  if (options.decimal_comma) {
-    return std::nullopt;
-  }
-  const std::string problem = fmt::format(
-      "rows hold more cells than the {} columns: numbers have decimal commas, and commas separate the columns, too",
-      file.fractions.size());
-  return RawFault{"decimal-commas", file.path, problem, "give `decimal-comma`", "`decimal-comma`", problem};
-}
-
 // Says so where the numbers of a table have decimal commas. The first rows decide.
 void add_decimal_mark(const GazeFile& file, RawGaze& raw) {
   std::size_t commas = 0;
@@ -130,13 +103,12 @@ void add_decimal_mark(const GazeFile& file, RawGaze& raw) {
       }
     }
   }
-  if (!file.fractions.empty() || commas > 9 * points) {
-    add_note(raw, "decimal mark", "comma", Evidence::statistics,
-             file.fractions.empty() ? "understood" : "cells that it split are joined");
+  if (commas > 9 * points) {
+    add_note(raw, "decimal mark", "comma", Evidence::statistics, "understood");
   }
 }
 
-RawGaze read_opened(GazeFile& file, const std::string& path, const GazeReadOptions& options, Mending mending) {
+RawGaze read_opened(GazeFile& file, const std::string& path, const GazeReadOptions& options) {
   const GazeFormat* format = options.format.empty() ? nullptr : &format_by_name(options.format);
   double confidence = 1;
   if (file.text.empty() || trim(head_of(file)).empty()) {
@@ -157,15 +129,11 @@ RawGaze read_opened(GazeFile& file, const std::string& path, const GazeReadOptio
     confidence = guesses.front().confidence;
   }
   refuse_other_tables(file, !options.format.empty());
-  refuse_thousands(file);
+  refuse_split_numbers(file);
   if (confidence < 0.8) {
     refuse_prose(file);
   }
-  const std::optional<RawFault> commas = join_decimal_commas(file, options, mending);
   RawGaze raw = format->read(file, options);
-  if (commas) {
-    raw.faults.push_back(*commas);
-  }
   add_decimal_mark(file, raw);
   raw.source = path;
   raw.format = format->name;
@@ -224,17 +192,13 @@ std::vector<GazeFormatInfo> gaze_formats() {
   return infos;
 }
 
-RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options, Mending mending) {
-  return with_file(path, options, [&](GazeFile& file) { return read_opened(file, path, options, mending); });
-}
-
 RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options) {
-  return read_raw_gaze(path, options, Mending::none);
+  return with_file(path, options, [&](GazeFile& file) { return read_opened(file, path, options); });
 }
 
 GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options) {
   return with_file(path, options, [&](GazeFile& file) {
-    const RawGaze raw = read_opened(file, path, options, Mending::none);
+    const RawGaze raw = read_opened(file, path, options);
     if (options.format.empty()) {
       file = {};  // no hint can be needed: the text is given back before samples are made of the rows
     }

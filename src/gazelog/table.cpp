@@ -54,13 +54,7 @@ void split_row(std::string_view line, const DelimitedTable& table, std::size_t c
     return found == nullptr ? end : found;
   };
   while (cells.size() < count) {
-    const char* stop = next_separator(at);
-    // A missing value takes one cell even where numbers take two.
-    const bool joins = cells.size() < table.fractions.size() && table.fractions[cells.size()] && stop != end &&
-                       stop != at && stop[-1] >= '0' && stop[-1] <= '9';
-    if (joins) {
-      stop = next_separator(stop + 1);
-    }
+    const char* const stop = next_separator(at);
     cells.emplace_back(at, static_cast<std::size_t>(stop - at));
     if (stop == end) {
       return;
@@ -272,7 +266,6 @@ DelimitedTable open_table(const GazeFile& file) {
     table.body = std::string_view(body, static_cast<std::size_t>(file.text.data() + file.text.size() - body));
     table.lines_above = table.has_header ? lines.number() : lines.number() - 1;
     table.place = place_of(file, table.header_line);
-    table.fractions = file.fractions;
     break;
   }
   return table;

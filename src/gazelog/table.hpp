@@ -39,8 +39,7 @@ struct DelimitedTable {
   std::string_view body;         // from the first row
   std::int64_t lines_above = 0;  // before the body
   std::vector<PreambleLine> preamble;
-  std::vector<bool> fractions;  // as in GazeFile
-  std::string place;            // file:line of the header
+  std::string place;  // file:line of the header
 
   // Finds a column by its whole text or its name, ignoring blanks, punctuation and case. Throws Error(input) where two
   // columns have that name.

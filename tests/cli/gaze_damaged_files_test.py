@@ -98,7 +98,7 @@ class DamagedFiles(harness.CliTest):
         self.write("quotes.csv", "time,x,y\n" + rows(",", lambda v: f'"{v:,}"'))
         self.assert_refused(["gaze", "import", "quotes.csv", "-o", "no.csv", *more], ["thousands separators"])
         self.write("bare.csv", "time,x,y\n" + rows(",", grouped))
-        self.assert_refused(["gaze", "import", "bare.csv", "-o", "no.csv", *more], ["group the digits", "without thousands separators"])
+        self.assert_refused(["gaze", "import", "bare.csv", "-o", "no.csv", *more], ["between thousands", "without thousands separators"])
         self.write("point.tsv", "time\tx\ty\n" + "".join(f"{4 * i}\t{1000.5 + i:,.1f}\t540\n" for i in range(20)))
         self.assert_refused(["gaze", "import", "point.tsv", "-o", "no.csv", *more], ["thousands separators", "'1,000.5' in column 'x'"])
         for mark in ("'", ".", " ", "\u00a0", "\u2019", "\u202f"):

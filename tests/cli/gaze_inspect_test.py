@@ -325,10 +325,12 @@ class Doctor(harness.CliTest):
 
     # -- decimal commas
 
-    def test_decimal_commas_between_commas(self):
+    def test_decimal_commas_between_commas_are_refused(self):
         for name, common in (("plain-csv/gaze-toy-example.csv", ["--screen-px", "1280,1024"]), ("arff/gaze.arff", [])):
-            broken = breaking.decimal_commas(self.sample(name), breaking.begins_with_digit)
-            self.assert_mended(name, broken, "decimal-commas", "--decimal-comma", common=common, kinds=["fault"])
+            self.write("broken-" + name[name.rfind("/") + 1:], breaking.decimal_commas(self.sample(name), breaking.begins_with_digit))
+            for command in (["inspect"], ["import", "-o", "no.csv"]):
+                self.assert_refused(["gaze", command[0], "broken-" + name[name.rfind("/") + 1:], *command[1:], *common],
+                                    ["more cells than the", "as decimal marks", "export again with decimal points"])
 
     def test_decimal_commas_between_other_separators_need_no_option(self):
         for name in ("vive-pro-eye/TESTNA01_360VR_Fist3.csv", "eyelink-asc/mono500.asc", "smi-iview-txt/recording1_Samples.txt"):

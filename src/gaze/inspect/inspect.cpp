@@ -105,7 +105,7 @@ GazeUnderInspection load_for_inspection(const std::string& path, GazeReadOptions
   read.guess_display = true;
   read.frame = read.frame == GazeFrame::automatic ? GazeFrame::scene_camera : read.frame;
   GazeUnderInspection gaze;
-  gaze.raw = read_raw_gaze(path, read, Mending::decimal_commas);
+  gaze.raw = read_raw_gaze(path, read);
   if (needs_a_choice(gaze.raw)) {
     gaze.is_first_of_several = true;
     choose_recording(gaze.raw, "1");

@@ -71,7 +71,6 @@ RawGaze read_gaze_arff(const GazeFile& file, const GazeReadOptions& options) {
   DelimitedTable table = open_headerless(header.rows, ',', header.names);
   table.lines_above = header.lines_above;
   table.place = place_of(file, header.lines_above);
-  table.fractions = file.fractions;
   const std::string place = place_of(file, header.lines_above);
   const auto named = [&](const std::string& declared, std::string_view own) {
     if (!declared.empty()) {

@@ -136,9 +136,6 @@ void add_convention_options(OptionSchema<GazeFileSettings>& schema) {
   schema.flag("--swap-xy", gaze_read(&GazeReadOptions::swap_xy), Touch::gaze, "Exchanges the two axes");
   schema.flag("--flip-x", gaze_read(&GazeReadOptions::flip_x), Touch::gaze, "Exchanges left and right");
   schema.flag("--flip-y", gaze_read(&GazeReadOptions::flip_y), Touch::gaze, "Exchanges top and bottom");
-  schema.flag(
-      "--decimal-comma", gaze_read(&GazeReadOptions::decimal_comma), Touch::gaze,
-      "Numbers have decimal commas although commas also separate the columns; not needed with tabs or semicolons");
   schema
       .value("--events", gaze_read(&GazeReadOptions::events_file), "FILE", Touch::gaze,
              "A table of fixations, saccades or blinks that another program found in this log: they become its events")

@@ -204,25 +204,5 @@ TEST(GazeInspect, ColumnsOfOneNameAreNotTakenByChance) {
   std::filesystem::remove(path);
 }
 
-TEST(GazeInspect, DecimalCommasBetweenCommas) {
-  using Status = DecimalCommas::Status;
-  const auto find = [](const std::string& text) { return find_decimal_commas({"log.csv", text, {}}); };
-  std::string all = "t,x,y\n";
-  std::string some = "n,x,y,c\n";
-  for (int i = 0; i < 50; ++i) {
-    all += std::to_string(4 * i) + ",0," + std::to_string(200 + i) + ",5," + std::to_string(300 - i) + ",25\n";
-    some += std::to_string(1000 + 4 * i) + "," + std::to_string(200 + i) + "," + std::to_string(i * 7 % 10) + "," +
-            std::to_string(300 - i) + "," + std::to_string(i * 3 % 10) + ",1\n";
-  }
-  EXPECT_EQ(find(all).status, Status::found);
-  EXPECT_EQ(find(all).fractions, (std::vector<bool>{true, true, true}));
-  EXPECT_EQ(find(some).status, Status::found);
-  EXPECT_EQ(find(some).fractions, (std::vector<bool>{false, true, true, false}));
-  EXPECT_EQ(find("t,x,y\n0,1,2\n4,1,2\n8,1,2\n").status, Status::none);
-  EXPECT_EQ(find("t;x;y\n0,5;1;2\n4,5;1;2\n8,5;1;2\n").status, Status::none);
-  // The same digits could be read in two ways.
-  EXPECT_EQ(find("t,x,y\n1,5,5,5\n2,5,5,5\n3,5,5,5\n4,5,5,5\n").status, Status::ambiguous);
-}
-
 }  // namespace
 }  // namespace gazetrace
