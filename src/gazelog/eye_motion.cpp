@@ -57,12 +57,11 @@ std::optional<Saccades> find_saccades(const std::vector<Point>& points) {
   const double step_ms = quantile(steps, 0.5);
   const double rest = quantile(lengths, 0.5);
   const double fast = quantile(lengths, 0.98);
-  if (!(step_ms > 0) || step_ms > kLongestStepMs || !(fast > 8 * rest)) {
+  if (!(step_ms > 0) || step_ms > kLongestStepMs || !(fast > 5 * rest)) {
     return std::nullopt;
   }
   const double threshold = std::max(4 * rest, 0.1 * fast);
-  std::vector<double> amplitudes;
-  std::vector<double> durations;
+  std::vector<std::pair<double, double>> saccades;  // amplitude and duration
   for (std::size_t i = 0; i < lengths.size();) {
     std::size_t end = i;
     while (end < lengths.size() && lengths[end] > threshold && steps[end] < 3 * step_ms) {
@@ -70,15 +69,23 @@ std::optional<Saccades> find_saccades(const std::vector<Point>& points) {
     }
     const double duration = static_cast<double>(end - i) * step_ms;
     if (end > i + 1 && duration >= 8 && duration <= 150) {
-      amplitudes.push_back(std::hypot(points[end].x - points[i].x, points[end].y - points[i].y));
-      durations.push_back(duration);
+      saccades.emplace_back(std::hypot(points[end].x - points[i].x, points[end].y - points[i].y), duration);
     }
     i = end + 1;
   }
-  if (amplitudes.size() < kFewestSaccades) {
+  if (saccades.size() < kFewestSaccades) {
     return std::nullopt;
   }
-  return Saccades{amplitudes.size(), lower_quantile(amplitudes, 0.5), lower_quantile(durations, 0.5)};
+  // Of small ones noise hides the beginning and the end, so the largest tell.
+  std::sort(saccades.rbegin(), saccades.rend());
+  saccades.resize(std::max(kFewestSaccades, saccades.size() / 4));
+  std::vector<double> amplitudes;
+  std::vector<double> durations;
+  for (const auto& [amplitude, duration] : saccades) {
+    amplitudes.push_back(amplitude);
+    durations.push_back(duration);
+  }
+  return Saccades{saccades.size(), lower_quantile(amplitudes, 0.5), lower_quantile(durations, 0.5)};
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ struct Extent {
   [[nodiscard]] double spread() const { return high - low; }
 };
 
-// Jumps between rests, in the unit of the numbers; medians of them.
+// The largest jumps between rests, in the unit of the numbers; medians of them.
 struct Saccades {
   std::size_t count = 0;
   double amplitude = 0, duration_ms = 0;

@@ -153,7 +153,7 @@ class Judge {
            lie, "another `unit` or `screen-px`, or `origin` top-left"},
           c_.unit.evidence == Evidence::option || c_.origin.evidence == Evidence::option ? Evidence::option
                                                                                          : Evidence::header);
-    } else if (is_centered && percent(first_quarter) > 99 && count > kEnough) {
+    } else if (is_centered && percent(first_quarter) > 90 && count > kEnough) {
       add({"origin", "gaze would lie in one quarter of the display alone, to the right of its center and above",
            fmt::format("{:.0f} % of the numbers are not negative, though they count from the center",
                        percent(first_quarter)),
@@ -207,7 +207,7 @@ class Judge {
     }
   }
 
-  // Numbers whose saccades last far too long for the size that they would have.
+  // Numbers whose saccades last far too long, or too short, for the size that they would have.
   void scale() {
     if (c_.unit.evidence == Evidence::statistics || raw_.kind != GazeKind::screen) {
       return;
@@ -215,10 +215,16 @@ class Judge {
     const auto motion = measure_motion(measurable_rows(raw_, c_), raw_);
     const double degrees = degrees_of_unit() * c_.unit_scale;  // of a number as the file has it
     const auto factor = motion ? motion->degrees_per_unit() : std::nullopt;
-    constexpr double kFarTooSmall = 5;
-    constexpr double kSmallDeg = 4;
-    if (factor && *factor > kFarTooSmall * degrees &&
-        degrees_of_unit() * std::max(motion->x.spread(), motion->y.spread()) < kSmallDeg) {
+    // The beginning and the end of a saccade are lost in noise: they seem shorter than they are, by up to three times.
+    constexpr double kFarTooSmall = 2;
+    constexpr double kFarTooLarge = 10;
+    constexpr double kSmallDeg = 8;
+    constexpr double kLargeDeg = 8;
+    const bool is_too_small = factor && *factor > kFarTooSmall * degrees &&
+                              degrees_of_unit() * std::max(motion->x.spread(), motion->y.spread()) < kSmallDeg;
+    const bool is_too_large =
+        factor && *factor * kFarTooLarge < degrees && degrees * motion->saccades->amplitude > kLargeDeg;
+    if (is_too_small || is_too_large) {
       add({"position-unit", fmt::format("the positions can hardly be in {}", to_string(c_.unit.value)),
            fmt::format("{}; so {}", motion->in_words(), motion->if_degrees(degrees)), "another `unit`"},
           c_.unit.evidence);
@@ -333,7 +339,9 @@ UnitReading read_unit(const RawRows& rows, const RawGaze& raw, const DisplayGeom
     reading.unit = PositionUnit::px;
     reading.evidence += fmt::format("; as degrees the eye would turn to {:.0f}", m.most());
     const bool may_be_percent = m.x.low >= 0 && m.y.low >= 0 && m.most() <= kLargestPercent;
-    const bool may_be_mm = lies_on(m, mm) && m.x.spread() > 0.4 * mm.x && m.x.spread() < 0.4 * px.x;
+    // Millimetres lie in that corner of the display that has as many pixels.
+    const bool may_be_mm =
+        mm.x > 0 && std::min(m.x.low, m.y.low) >= 0 && m.x.high < 1.1 * mm.x && m.y.high < 1.1 * mm.y;
     reading.is_plain = lies_on(m, px) && !may_be_mm && !may_be_percent;
     if (may_be_percent) {
       reading.doubt = ReadingDoubt{"position-unit", "the unit of x and y is undecided: pixels or per cent?",
