@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "gazetrace/error.hpp"
 
@@ -41,9 +42,16 @@ std::string unpack_gzip(std::string_view bytes, const std::string& path, std::ui
   }
   z_stream& stream = inflater.stream();
   std::string text;
+  // The last four bytes state the length. With room for it nothing has to be held twice while the text grows.
+  std::uint32_t stated = 0;
+  if (bytes.size() >= sizeof(stated)) {
+    std::memcpy(&stated, bytes.data() + bytes.size() - sizeof(stated), sizeof(stated));
+  }
+  constexpr std::size_t kMostRoom = std::size_t{64} << 20U;
+  text.reserve(std::min<std::size_t>(stated, limit) + kMostRoom);
   std::size_t used = 0;  // bytes of the input
   for (;;) {
-    const std::size_t room = std::clamp(text.size() / 2, std::size_t{65536}, std::size_t{64} << 20U);
+    const std::size_t room = std::clamp(text.size() / 2, std::size_t{65536}, kMostRoom);
     const std::size_t filled = text.size();
     text.resize(filled + room);
     const auto piece = static_cast<uInt>(std::min<std::size_t>(bytes.size() - used, std::size_t{1} << 30U));
