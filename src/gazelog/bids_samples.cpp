@@ -16,8 +16,7 @@ namespace {
 using Json = BidsJson;
 
 BidsRow row_of(const GazeSample& sample, GazeKind kind) {
-  const Vec3d at = kind == GazeKind::direction ? sample.direction : Vec3d{sample.u, sample.v, 0};
-  return {sample.t_ns, {at, sample.confidence, sample.pupil, sample.validity}, {NAN, NAN, NAN}};
+  return {sample.t_ns, eye_gaze(sample, kind), {NAN, NAN, NAN}};
 }
 
 template <class Number>

@@ -144,27 +144,6 @@ class ShortAbsences {
   std::size_t after_ = 0;  // the first pair after the sample that was asked for last
 };
 
-EyeGaze eye_gaze(const GazeSample& sample, GazeKind kind) {
-  return {kind == GazeKind::direction ? sample.direction : Vec3d{sample.u, sample.v, 0}, sample.confidence,
-          sample.pupil, sample.validity};
-}
-
-void set_place(GazeSample& sample, const EyeGaze& eye, GazeKind kind) {
-  if (kind == GazeKind::direction) {
-    sample.direction = eye.at;
-  } else {
-    sample.u = eye.at.x;
-    sample.v = eye.at.y;
-  }
-}
-
-void take_eye(GazeSample& sample, const EyeGaze& eye, GazeKind kind) {
-  set_place(sample, eye, kind);
-  sample.validity = eye.validity;
-  sample.confidence = eye.confidence;
-  sample.pupil = eye.pupil;
-}
-
 using TakenEye = Conventions::TakenEye;
 
 TakenEye taken_of(Eye eye) {
@@ -351,6 +330,23 @@ void take_stated_eye(GazeLog& log, Eye eye, bool has_own_rows, const AnglePlane&
 }
 
 }  // namespace
+
+EyeGaze eye_gaze(const GazeSample& sample, GazeKind kind) {
+  return {kind == GazeKind::direction ? sample.direction : Vec3d{sample.u, sample.v, 0}, sample.confidence,
+          sample.pupil, sample.validity};
+}
+
+void take_eye(GazeSample& sample, const EyeGaze& eye, GazeKind kind) {
+  if (kind == GazeKind::direction) {
+    sample.direction = eye.at;
+  } else {
+    sample.u = eye.at.x;
+    sample.v = eye.at.y;
+  }
+  sample.validity = eye.validity;
+  sample.confidence = eye.confidence;
+  sample.pupil = eye.pupil;
+}
 
 ChosenEye chosen_eye(const GazeLog& log) {
   if (log.eyes.empty() || log.samples.empty() || log.samples.front().eye == Eye::cyclopean) {

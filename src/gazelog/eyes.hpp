@@ -46,6 +46,10 @@ class RowGrouper {
 // taken.
 void choose_eyes(GazeLog& log, const RowsOfEyes& rows);
 
+// The gaze of a sample as that of one eye, and the other way round: what of a sample an eye's gaze replaces.
+EyeGaze eye_gaze(const GazeSample& sample, GazeKind kind);
+void take_eye(GazeSample& sample, const EyeGaze& eye, GazeKind kind);
+
 // How the samples of a log with both eyes relate to one of them.
 struct ChosenEye {
   std::optional<Eye> eye;  // the eye whose samples they are, by GazeSample::eye; empty: both

@@ -16,6 +16,27 @@ void add_note(RawGaze& raw, std::string what, std::string value, Evidence eviden
   raw.notes.push_back({std::move(what), std::move(value), evidence, std::move(detail)});
 }
 
+void state_display_px(RawGaze& raw, double width, double height, Evidence evidence, std::string detail) {
+  if (!(width >= 1 && height >= 1 && width < 1e5 && height < 1e5)) {
+    return;
+  }
+  DisplayGeometry g = raw.recording_geometry.value_or(DisplayGeometry{});
+  g.width_px = static_cast<int>(std::lround(width));
+  g.height_px = static_cast<int>(std::lround(height));
+  raw.recording_geometry = g;
+  add_note(raw, "display size", fmt::format("{}x{} px", g.width_px, g.height_px), evidence, std::move(detail));
+}
+
+void guess_picture_size(RawGaze& raw) {
+  double widest = 0;
+  for (const RawSample sample : raw.rows) {
+    widest = sample.at.x > widest && sample.at.x < 1600 ? sample.at.x : widest;
+  }
+  raw.picture_px = widest > 1100 ? Vec2d{1600, 1200} : Vec2d{1088, 1080};
+  add_note(raw, "picture size", fmt::format("{}x{} px", raw.picture_px->x, raw.picture_px->y), Evidence::statistics,
+           fmt::format("places reach {:.0f} px", widest));
+}
+
 TimeScale declare_time(RawGaze& raw, const GazeReadOptions& options, std::string_view column, int stated,
                        Evidence evidence, const std::string& place) {
   const auto given = time_exponent_of(options.columns.time_unit);
@@ -140,6 +161,17 @@ void LabelRuns::add(GazeEventType type, Eye eye, std::string_view key, std::int6
     open_ = true;
   }
   events_.back().end_ns = t_ns;
+}
+
+void LabelRuns::add_named(std::string_view word, Eye eye, std::string_view key, std::int64_t t_ns, std::int64_t row) {
+  if (word == "Fixation" || word == "Saccade" || word == "Blink") {
+    add(word == "Fixation"  ? GazeEventType::fixation
+        : word == "Saccade" ? GazeEventType::saccade
+                            : GazeEventType::blink,
+        eye, key, t_ns, row);
+  } else {
+    end();
+  }
 }
 
 void LabelRuns::end() {

@@ -17,6 +17,12 @@ namespace gazetrace {
 // Adds a fact that the file states, in words for people.
 void add_note(RawGaze& raw, std::string what, std::string value, Evidence evidence, std::string detail = {});
 
+// Adds the size of the display, where the file states one, to what is known of it; `detail` says where it stands.
+void state_display_px(RawGaze& raw, double width, double height, Evidence evidence, std::string detail);
+
+// The picture of Pupil Labs' scene camera is 1088 x 1080 for Invisible, 1600 x 1200 for Neon; many files do not say.
+void guess_picture_size(RawGaze& raw);
+
 // Declares the column and the unit of the stamps: the unit that the user gave or, without one, `stated`.
 TimeScale declare_time(RawGaze& raw, const GazeReadOptions& options, std::string_view column, int stated,
                        Evidence evidence, const std::string& place);
@@ -73,6 +79,8 @@ class LabelRuns {
   // `text` is that of the event, where the label has words that are to be kept.
   void add(GazeEventType type, Eye eye, std::string_view key, std::int64_t t_ns, std::int64_t row,
            std::string_view text = {});
+  // The same by the tracker's word for it; any other word than Fixation, Saccade or Blink ends the run.
+  void add_named(std::string_view word, Eye eye, std::string_view key, std::int64_t t_ns, std::int64_t row);
   void end();  // ends the run, for a row without a label
   void finish(RawGaze& raw);
 

@@ -142,15 +142,7 @@ void append_number(std::string& text, Number value) {
 GazeSample eye_row(const GazeSample& sample, const EyeGaze& gaze, Eye eye, GazeKind kind) {
   GazeSample row = sample;
   row.eye = eye;
-  row.validity = gaze.validity;
-  row.confidence = gaze.confidence;
-  row.pupil = gaze.pupil;
-  if (kind == GazeKind::direction) {
-    row.direction = gaze.at;
-  } else {
-    row.u = gaze.at.x;
-    row.v = gaze.at.y;
-  }
+  take_eye(row, gaze, kind);
   return row;
 }
 

@@ -128,6 +128,15 @@ class Siblings(ReadingTest):
         names = ["--time-column", "1", "--time-unit", "ms", "--x-column", "2", "--y-column", "3", "--unit", "px", *PX]
         return self.refused("s04.csv", ["scene camera"], [], names)
 
+    def s05_invisible_by_lsl(self):
+        "Pupil Invisible's relay: px of the scene camera, which it calls the world; never a screen"
+        more = "<eye>both</eye><metatype>Screen{}</metatype><unit>pixels</unit><coordinate_system>world</coordinate_system>"
+        samples = [(1000 + t, (1088 * x, 1080 * y)) for t, x, y in viewers.on_screen(blinks=False)]
+        (self.folder / "s05.xdf").write_bytes(viewers.xdf("pupil_invisible_Gaze", [("x", more.format("X")), ("y", more.format("Y"))], samples))
+        refused, got = self.refused("s05.xdf", ["scene camera"], [], ["--screen-px", "1088,1080"])
+        text = self.inspect("s05.xdf")
+        return refused and "scene camera" in text and "1088x1080" in text, got
+
     # Directions and what looks like them.
 
     def r01_unity_rotation(self):

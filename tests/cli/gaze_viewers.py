@@ -4,6 +4,7 @@ What they do is written as recordings of many kinds."""
 
 import math
 import random
+import struct
 
 from gaze_reading import ANGLES, PLACES
 
@@ -57,3 +58,17 @@ def quaternion(right, up, ahead, forward=1):
     w = 1 + sum(a * b for a, b in zip(from_z, to))
     norm = math.sqrt(sum(c * c for c in cross) + w * w)
     return [c / norm for c in cross] + [w / norm]
+
+
+def xdf(name, channels, samples):
+    """LSL's file of one stream of type Gaze: channels are (label, other XML) and samples (seconds, values)."""
+
+    def chunk(tag, content):
+        return struct.pack("<BQH", 8, len(content) + 2, tag) + content
+
+    described = "".join(f"<channel><label>{label}</label>{more}</channel>" for label, more in channels)
+    header = (f"<info><name>{name}</name><type>Gaze</type><channel_count>{len(channels)}</channel_count><nominal_srate>0</nominal_srate>"
+              f"<channel_format>double64</channel_format><desc><channels>{described}</channels></desc></info>")
+    rows = b"".join(struct.pack("<Bd", 8, t) + struct.pack(f"<{len(values)}d", *values) for t, values in samples)
+    return (b"XDF:" + chunk(1, b"<info><version>1.0</version></info>") + chunk(2, struct.pack("<I", 1) + header.encode())
+            + chunk(3, struct.pack("<IBQ", 1, 8, len(samples)) + rows))

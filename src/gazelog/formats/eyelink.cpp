@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/text.hpp"
+#include "gazelog/eyelink_block.hpp"
 #include "gazelog/read_support.hpp"
 #include "gazelog/recordings.hpp"
 #include "gazelog/row_samples.hpp"
@@ -19,56 +20,10 @@ namespace {
 constexpr std::int64_t kHalfMs = 500'000;
 constexpr double kMissing = -32768;
 
-struct Block {
-  bool has_left = true, has_right = false;
-  std::string data = "GAZE";  // GAZE, HREF or PUPIL
-  double rate_hz = 0;
-  bool has_velocity = false, has_resolution = false, has_input = false, has_buttons = false;
-
-  [[nodiscard]] std::size_t eyes() const { return (has_left ? 1U : 0U) + (has_right ? 1U : 0U); }
-  [[nodiscard]] std::size_t resolution_column() const { return 1 + 3 * eyes() + (has_velocity ? 2 * eyes() : 0); }
-  [[nodiscard]] std::size_t flags_column() const {
-    return resolution_column() + (has_resolution ? 2U : 0U) + (has_buttons ? 1U : 0U) + (has_input ? 1U : 0U);
-  }
-};
-
-struct Span {
-  std::int64_t begin_ns, end_ns;
-};
-
 // A block, with the messages that stand between the block before it and its START.
 struct BlockBegin {
   std::int64_t line, begin_ns;
 };
-
-// Samples as edf2asc writes them without messages: a whole stamp, three or six numbers, and flags of dots and letters.
-// Returns how many numbers there are; 0 for another text.
-std::size_t numbers_of_bare_samples(std::string_view text) {
-  constexpr std::size_t kLooked = 20;
-  std::size_t found = 0;
-  std::size_t lines_seen = 0;
-  std::vector<std::string_view> words;
-  LineReader lines(text);
-  for (std::string_view line; lines_seen < kLooked && lines.next(line);) {
-    split_cells(line, ' ', words);
-    if (words.empty()) {
-      continue;
-    }
-    ++lines_seen;
-    const std::size_t numbers = words.size() - 2;
-    const std::string_view flags = words.back();
-    const bool fits = words.size() > 4 && words[0].size() > 3 &&
-                      words[0].find_first_not_of("0123456789.") == std::string_view::npos &&
-                      (numbers == 3 || numbers == 6) && flags.size() == (numbers == 6 ? 5 : 3) &&
-                      flags.find_first_not_of(".ICR") == std::string_view::npos &&
-                      line.find('\t') != std::string_view::npos && (found == 0 || found == numbers);
-    if (!fits) {
-      return 0;
-    }
-    found = numbers;
-  }
-  return found;
-}
 
 class AscReader {
  public:
@@ -224,7 +179,7 @@ class AscReader {
     double width = corners[2] - corners[0] + 1;
     double height = corners[3] - corners[1] + 1;
     // Some programs write the size in place of the last corner: 0 0 1280 1024.
-    const bool is_size = !is_usual_height(height) && is_usual_height(height - 1);
+    const bool is_size = !is_usual_display_height(height) && is_usual_display_height(height - 1);
     width -= is_size ? 1 : 0;
     height -= is_size ? 1 : 0;
     if (!(width >= 2 && height >= 2 && width < 1e5 && height < 1e5) || (coordinates_are_gaze_ && !is_gaze)) {
@@ -238,12 +193,6 @@ class AscReader {
       coordinates_ = fmt::format("{} {} {} {} {}, {}", word(2), word(3), word(4), word(5), word(6),
                                  is_size ? "which is the size, not the last pixel" : "inclusive corners");
     }
-  }
-
-  static bool is_usual_height(double px) {
-    static constexpr std::array kHeights{480,  600,  720,  768,  800,  864,  900,  960,  1024,
-                                         1050, 1080, 1200, 1280, 1440, 1536, 1600, 2160, 2880};
-    return std::find(kHeights.begin(), kHeights.end(), static_cast<int>(std::lround(px))) != kHeights.end();
   }
 
   // A corner and a size hold for the rows below the line that states them.
@@ -308,10 +257,8 @@ class AscReader {
     if (type == GazeEventType::fixation) {
       compare_fixation(eye, begin, end);
     }
-    if (type == GazeEventType::blink) {
-      blinks_[eye == Eye::right ? 1 : 0].push_back({begin, end});
-    } else if (type == GazeEventType::saccade) {
-      saccades_[eye == Eye::right ? 1 : 0].push_back({begin, end});
+    if (type != GazeEventType::fixation) {
+      (type == GazeEventType::blink ? blinks_ : saccades_)[eye == Eye::right ? 1 : 0].push_back({begin, end});
     }
   }
 
@@ -413,41 +360,6 @@ class AscReader {
     return sample;
   }
 
-  // A blink begins and ends in what the tracker takes for a saccade; all of it is blink.
-  void mark_blinks() {
-    for (std::size_t side = 0; side < 2; ++side) {
-      std::vector<Span> spans = blinks_[side];
-      std::size_t b = 0;
-      for (const Span& saccade : saccades_[side]) {
-        while (b < blinks_[side].size() && blinks_[side][b].end_ns < saccade.begin_ns) {
-          ++b;
-        }
-        if (b < blinks_[side].size() && blinks_[side][b].begin_ns >= saccade.begin_ns &&
-            blinks_[side][b].end_ns <= saccade.end_ns) {
-          spans.push_back(saccade);
-        }
-      }
-      std::sort(spans.begin(), spans.end(), [](const Span& x, const Span& y) { return x.begin_ns < y.begin_ns; });
-      std::size_t s = 0;
-      for (std::size_t row = 0; row < raw_.rows.size() && !spans.empty(); ++row) {
-        const RawSample sample = raw_.rows[row];
-        if (sample.eye != (side == 0 ? Eye::left : Eye::right)) {
-          continue;
-        }
-        while (s < spans.size() && spans[s].end_ns < sample.t_ns) {
-          ++s;
-        }
-        // Spans may hold each other: a saccade and the blink within.
-        for (std::size_t i = s; i < spans.size() && spans[i].begin_ns <= sample.t_ns; ++i) {
-          if (sample.t_ns <= spans[i].end_ns) {
-            raw_.rows.set_validity(row, GazeValidity::blink);
-            break;
-          }
-        }
-      }
-    }
-  }
-
   // A tracker that was started anew counts from another zero: then another session begins.
   void divide() {
     std::size_t sessions = 1;
@@ -484,7 +396,8 @@ class AscReader {
                   "run edf2asc again with messages, or give `screen-px` W,H of the recording");
     }
     divide();
-    mark_blinks();
+    mark_blinks(raw_.rows, Eye::left, blinks_[0], saccades_[0]);
+    mark_blinks(raw_.rows, Eye::right, blinks_[1], saccades_[1]);
     if (in_block_) {
       raw_.events.push_back({GazeEventType::segment, Eye::cyclopean, block_start_, raw_.rows.back().t_ns,
                              "recording block without its end", line_});
@@ -502,10 +415,9 @@ class AscReader {
                fmt::format("{:.2f} x {:.2f} px/deg", raw_.pixels_per_degree->x, raw_.pixels_per_degree->y),
                Evidence::header, block_.has_resolution ? "RES of the samples and blocks" : "RES of END");
     }
-    if (raw_.recording_geometry) {
-      add_note(raw_, "display size",
-               fmt::format("{}x{} px", raw_.recording_geometry->width_px, raw_.recording_geometry->height_px),
-               Evidence::header, coordinates_);
+    if (const auto& g = raw_.recording_geometry) {
+      add_note(raw_, "display size", fmt::format("{}x{} px", g->width_px, g->height_px), Evidence::header,
+               coordinates_);
     }
     fixations_.finish(raw_, "the fixations' means (EFIX)");
     if (block_.eyes() == 2) {
@@ -519,7 +431,7 @@ class AscReader {
   const GazeReadOptions& options_;
   RawGaze raw_;
   int exponent_ = 6;
-  Block block_;
+  EyeLinkBlock block_;
   std::int64_t line_ = 0;
   std::vector<std::string_view> words_;
   std::string last_stamp_;
@@ -532,7 +444,7 @@ class AscReader {
   bool coordinates_are_gaze_ = false;
   std::string coordinates_;
   std::vector<Vec2d> resolutions_;
-  std::array<std::vector<Span>, 2> blinks_, saccades_;
+  std::array<std::vector<TimeSpan>, 2> blinks_, saccades_;
   WitnessTally fixations_;
   std::array<WitnessTally, 2> fixations_of_eye_;
   std::array<std::size_t, 2> compared_{};  // of each eye: the first sample behind its last fixation in the block

@@ -49,8 +49,7 @@ class GazeParserReader {
       display_.width_cm = per_cm_.x > 0 ? display_.width_px / per_cm_.x : 0;
       display_.height_cm = per_cm_.y > 0 ? display_.height_px / per_cm_.y : 0;
       raw_.recording_geometry = display_;
-      add_note(raw_, "display size", fmt::format("{}x{} px", display_.width_px, display_.height_px), Evidence::header,
-               "SCREEN_WIDTH and SCREEN_HEIGHT");
+      state_display_px(raw_, display_.width_px, display_.height_px, Evidence::header, "SCREEN_WIDTH and SCREEN_HEIGHT");
     }
     declare_places(raw_, {PositionUnit::px, origin_, Evidence::format, "X, Y", false, Evidence::header}, file_.path);
     return std::move(raw_);

@@ -51,17 +51,6 @@ RawSample sample_of(TableRows& rows, const CloudColumns& c, GazeKind kind, std::
   return sample;
 }
 
-// The picture is 1088 x 1080 for Invisible, 1600 x 1200 for Neon; the file does not say.
-void guess_picture_size(RawGaze& raw) {
-  double widest = 0;
-  for (const RawSample sample : raw.rows) {
-    widest = sample.at.x > widest && sample.at.x < 1600 ? sample.at.x : widest;
-  }
-  raw.picture_px = widest > 1100 ? Vec2d{1600, 1200} : Vec2d{1088, 1080};
-  add_note(raw, "picture size", fmt::format("{}x{} px", raw.picture_px->x, raw.picture_px->y), Evidence::statistics,
-           fmt::format("places reach {:.0f} px", widest));
-}
-
 void declare_angles(RawGaze& raw, const std::string& place) {
   declare_directions(raw, {"azimuth [deg], elevation [deg]", Evidence::header}, GazeAxes::gl, Evidence::format, place);
   raw.declared.form = PlaceForm::azimuth_elevation;

@@ -59,8 +59,7 @@ void read_preamble_lines(const DelimitedTable& table, RawGaze& raw) {
   }
   if (geometry.width_px > 0) {
     raw.recording_geometry = geometry;
-    add_note(raw, "display size", fmt::format("{}x{} px", geometry.width_px, geometry.height_px), Evidence::header,
-             "Calibration Area");
+    state_display_px(raw, geometry.width_px, geometry.height_px, Evidence::header, "Calibration Area");
   }
 }
 
@@ -148,18 +147,6 @@ RawSample sample_of(TableRows& rows, const SmiEye& eye, std::int64_t t_ns) {
   return sample;
 }
 
-void label_row(LabelRuns& runs, TableRows& rows, const SmiEye& eye, std::int64_t t_ns) {
-  const std::string_view event = rows.cell(eye.event);
-  if (event == "Fixation" || event == "Saccade" || event == "Blink") {
-    runs.add(event == "Fixation"  ? GazeEventType::fixation
-             : event == "Saccade" ? GazeEventType::saccade
-                                  : GazeEventType::blink,
-             eye.eye, event, t_ns, rows.line());
-  } else {
-    runs.end();
-  }
-}
-
 }  // namespace
 
 double sniff_gaze_smi(const GazeFile& file) {
@@ -197,7 +184,9 @@ RawGaze read_gaze_smi(const GazeFile& file, const GazeReadOptions& options) {
       for (const SmiEye& eye : c.eyes) {
         raw.rows.push_back(sample_of(rows, eye, t_ns));
       }
-      label_row(runs, rows, c.eyes.front(), t_ns);
+      const SmiEye& first = c.eyes.front();
+      const std::string event(rows.cell(first.event));
+      runs.add_named(event, first.eye, event, t_ns, rows.line());
     }
   }
   runs.finish(raw);

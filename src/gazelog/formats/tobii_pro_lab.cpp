@@ -148,12 +148,6 @@ LabColumns find_columns(const GazeFile& file, const DelimitedTable& table, const
   return c;
 }
 
-std::optional<GazeEventType> movement_type(std::string_view text) {
-  return text == "Fixation"  ? std::optional(GazeEventType::fixation)
-         : text == "Saccade" ? std::optional(GazeEventType::saccade)
-                             : std::nullopt;
-}
-
 }  // namespace
 
 double sniff_gaze_tobii_pro_lab(const GazeFile& file) {
@@ -205,14 +199,8 @@ RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
       continue;
     }
     if (c.width && c.height && !raw.recording_geometry) {
-      const double width = rows.number(*c.width);
-      const double height = rows.number(*c.height);
-      if (width >= 1 && height >= 1 && width < 1e5 && height < 1e5) {
-        raw.recording_geometry =
-            DisplayGeometry{.width_px = static_cast<int>(width), .height_px = static_cast<int>(height)};
-        add_note(raw, "display size", fmt::format("{:.0f}x{:.0f} px", width, height), Evidence::header,
-                 "Recording resolution width and height");
-      }
+      state_display_px(raw, rows.number(*c.width), rows.number(*c.height), Evidence::header,
+                       "Recording resolution width and height");
     }
     if (c.picture_width && c.picture_height && !raw.picture_px) {
       const Vec2d picture{rows.number(*c.picture_width), rows.number(*c.picture_height)};
@@ -237,11 +225,8 @@ RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
       }
       raw.rows.push_back(sample);
     }
-    if (const auto movement = movement_type(rows.cell(c.movement))) {
-      runs.add(*movement, Eye::cyclopean, std::string(rows.cell(c.movement_index)), t_ns, rows.line());
-    } else {
-      runs.end();
-    }
+    const std::string movement(rows.cell(c.movement));
+    runs.add_named(movement, Eye::cyclopean, rows.cell(c.movement_index), t_ns, rows.line());
   }
   runs.finish(raw);
   if (others > 0) {

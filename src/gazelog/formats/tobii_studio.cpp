@@ -135,10 +135,7 @@ class StudioReader {
     const std::size_t cross = text.find('x');
     const auto width = number_from(trim(text.substr(0, cross)));
     const auto height = cross == std::string_view::npos ? std::nullopt : number_from(trim(text.substr(cross + 1)));
-    if (width && height && *width >= 1 && *height >= 1 && *width < 1e5 && *height < 1e5) {
-      raw_.recording_geometry =
-          DisplayGeometry{.width_px = static_cast<int>(*width), .height_px = static_cast<int>(*height)};
-    }
+    state_display_px(raw_, width.value_or(0), height.value_or(0), Evidence::header, "RecordingResolution");
   }
 
   void read_row() {
@@ -181,7 +178,9 @@ class StudioReader {
       }
     }
     read_eye_places();
-    read_label(t_ns);
+    const std::string type(rows_.cell(c_.event_type));
+    runs_.add_named(type, Eye::cyclopean, rows_.cell(type == "Fixation" ? c_.fixation : c_.saccade), t_ns,
+                    rows_.line());
   }
 
   // The middle between both eyes, measured from the bottom left corner of the display, and from the display to the
@@ -211,17 +210,6 @@ class StudioReader {
     raw_.rows.push_back(sample);
   }
 
-  void read_label(std::int64_t t_ns) {
-    const std::string_view type = rows_.cell(c_.event_type);
-    if (type == "Fixation") {
-      runs_.add(GazeEventType::fixation, Eye::cyclopean, std::string(rows_.cell(c_.fixation)), t_ns, rows_.line());
-    } else if (type == "Saccade") {
-      runs_.add(GazeEventType::saccade, Eye::cyclopean, std::string(rows_.cell(c_.saccade)), t_ns, rows_.line());
-    } else {
-      runs_.end();
-    }
-  }
-
   void place_eyes(DisplayGeometry& g) {
     if (!eyes_z_mm_.empty() && g.width_cm > 0) {
       g.distance_cm = upper_median(eyes_z_mm_) / 10;
@@ -243,8 +231,6 @@ class StudioReader {
   void finish() {
     if (raw_.recording_geometry) {
       DisplayGeometry& g = *raw_.recording_geometry;
-      add_note(raw_, "display size", fmt::format("{}x{} px", g.width_px, g.height_px), Evidence::header,
-               "RecordingResolution");
       const double width_cm = std::abs(width_.value()) * g.width_px / 10;
       const double height_cm = std::abs(height_.value()) * g.height_px / 10;
       if (width_cm > 5 && height_cm > 5) {

@@ -22,6 +22,7 @@ namespace {
 struct Channel {
   std::string label, unit, type;
   Eye eye = Eye::cyclopean;
+  bool is_in_camera = false;  // a place on the picture of a camera on the head
 };
 
 struct GazeChannels {
@@ -52,6 +53,9 @@ std::vector<Channel> channels_of(const XdfStream& stream, const std::string& pat
     const std::string eye = to_lower(node.child("eye").text().as_string());
     const std::string label = to_lower(channel.label);
     const auto says = [&](std::string_view side) { return eye == side || label.find(side) != std::string::npos; };
+    // Pupil Labs' relays call the scene camera's picture the world.
+    const std::string space = to_lower(node.child("coordinate_system").text().as_string());
+    channel.is_in_camera = space.find("world") != std::string::npos || space.find("scene") != std::string::npos;
     channel.eye = says("left") ? Eye::left : says("right") ? Eye::right : Eye::cyclopean;
     channels.push_back(std::move(channel));
   }
@@ -113,7 +117,7 @@ Role role_of(const Channel& channel) {
     }
     for (const std::string_view stem : {"screen", "gaze", "", "gazepoint", "gazepointondisplayarea", "por", "pos"}) {
       if (channel.type == "screen" + axis || core == std::string(stem) + axis) {
-        return Role{i, false, false};
+        return Role{i, false, channel.is_in_camera};
       }
     }
   }
@@ -145,7 +149,7 @@ std::vector<GazeChannels> find_gazes(const std::vector<Channel>& channels, const
          {std::pair(&options.columns.x, 0U), std::pair(&options.columns.y, 1U), std::pair(&options.columns.z, 2U)}) {
       if (!declared->empty()) {
         if (*declared == channel.label) {
-          role = Role{axis, !options.columns.z.empty(), false};
+          role = Role{axis, !options.columns.z.empty(), channel.is_in_camera && options.columns.z.empty()};
         } else if (role.index == axis) {
           role = {};
         }
@@ -260,7 +264,12 @@ void declare_gaze(RawGaze& raw, const GazeChannels& gaze, const std::vector<Chan
                    columns};
   if (const auto unit = position_unit_from(channels[*gaze.at[0]].unit)) {
     space.unit = *unit;
-    space.origin = *unit == PositionUnit::deg ? PositionOrigin::center : space.origin;
+    space.origin = *unit == PositionUnit::deg  ? PositionOrigin::center
+                   : *unit == PositionUnit::px ? PositionOrigin::top_left
+                                               : space.origin;
+    if (gaze.is_scene_camera && *unit == PositionUnit::px) {
+      guess_picture_size(raw);
+    }
   } else if (!gaze.is_scene_camera) {
     space.unit = PositionUnit::automatic;
     space.origin = PositionOrigin::automatic;
