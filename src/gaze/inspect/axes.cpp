@@ -44,10 +44,10 @@ class Axes {
           continue;
         }
         swapped = true;
-        add(FindingKind::fault, "swapped-axes", "the axes are exchanged",
-            fmt::format("gaze x goes with y of {} (r = {:.2f}), and y with its x (r = {:.2f}), {} values", w.what, w.xy,
-                        w.yx, w.count),
-            "`swap-xy`");
+        add_finding(report_, FindingKind::fault, "swapped-axes", "the axes are exchanged",
+                    fmt::format("gaze x goes with y of {} (r = {:.2f}), and y with its x (r = {:.2f}), {} values",
+                                w.what, w.xy, w.yx, w.count),
+                    "`swap-xy`");
         continue;
       }
       if (speaks_for_gaze('x')) {
@@ -63,9 +63,9 @@ class Axes {
     for (const GazeAxisTest& test : report_.axes) {
       if (test.verdict == AxisVerdict::flipped) {
         const bool by_vor = test.evidence.starts_with("vestibulo");
-        add(by_vor ? FindingKind::suspicion : FindingKind::fault, fmt::format("{}-flip", test.axis),
-            test.axis == 'x' ? "left and right are exchanged" : "top and bottom are exchanged", test.evidence,
-            fmt::format("`flip-{}`", test.axis));
+        add_finding(report_, by_vor ? FindingKind::suspicion : FindingKind::fault, fmt::format("{}-flip", test.axis),
+                    test.axis == 'x' ? "left and right are exchanged" : "top and bottom are exchanged", test.evidence,
+                    fmt::format("`flip-{}`", test.axis));
       }
     }
     one_eye_told();
@@ -74,10 +74,6 @@ class Axes {
   }
 
  private:
-  void add(FindingKind kind, std::string code, std::string what, std::string evidence, std::string setting) {
-    report_.findings.push_back({kind, std::move(code), std::move(what), std::move(evidence), std::move(setting)});
-  }
-
   static void witness(const std::string& what, std::size_t count, double r, GazeAxisTest& test) {
     if (std::isnan(r) || std::abs(r) < kWitnessAgrees || test.verdict != AxisVerdict::undecided) {
       return;
@@ -194,13 +190,13 @@ class Axes {
       test.verdict = AxisVerdict::undecided;
       test.evidence += fmt::format("; nothing tells of the {} eye", other);
       if (flipped) {
-        add(FindingKind::fault, fmt::format("{}-flip", axis),
-            fmt::format("{} of the {} eye are exchanged", axis == 'x' ? "left and right" : "top and bottom",
-                        to_string(*told->eye)),
-            test.evidence, fmt::format("`flip-{}`", axis));
-        add(FindingKind::suspicion, "one-eye-untested",
-            fmt::format("which way {} of the {} eye runs could not be tested", axis, other), test.evidence,
-            fmt::format("`gaze-eye` {}", to_string(*told->eye)));
+        add_finding(report_, FindingKind::fault, fmt::format("{}-flip", axis),
+                    fmt::format("{} of the {} eye are exchanged", axis == 'x' ? "left and right" : "top and bottom",
+                                to_string(*told->eye)),
+                    test.evidence, fmt::format("`flip-{}`", axis));
+        add_finding(report_, FindingKind::suspicion, "one-eye-untested",
+                    fmt::format("which way {} of the {} eye runs could not be tested", axis, other), test.evidence,
+                    fmt::format("`gaze-eye` {}", to_string(*told->eye)));
       }
     }
   }
@@ -221,12 +217,12 @@ class Axes {
       const std::string which = !told          ? "one of them, left or right, it cannot be told,"
                                 : left_is_good ? "the right one"
                                                : "the left one";
-      add(FindingKind::fault, "one-eye-flipped",
-          fmt::format("the eyes go opposite ways along {}: {} has this axis the other way round", axis, which),
-          evidence_of_opposed_eyes(axis),
-          !told          ? ""
-          : left_is_good ? "`gaze-eye` left"
-                         : "`gaze-eye` right");
+      add_finding(report_, FindingKind::fault, "one-eye-flipped",
+                  fmt::format("the eyes go opposite ways along {}: {} has this axis the other way round", axis, which),
+                  evidence_of_opposed_eyes(axis),
+                  !told          ? ""
+                  : left_is_good ? "`gaze-eye` left"
+                                 : "`gaze-eye` right");
     }
   }
 

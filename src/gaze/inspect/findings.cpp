@@ -12,12 +12,9 @@
 #include "gazelog/recordings.hpp"
 #include "gazelog/row_samples.hpp"
 #include "gazelog/stamps.hpp"
-#include "gazelog/units.hpp"
 
 namespace gazetrace {
 namespace {
-
-constexpr double kPlausibleLowHz = 5, kPlausibleHighHz = 5000;
 
 class Doctor {
  public:
@@ -46,8 +43,7 @@ class Doctor {
 
   void examine() {
     faults_of_reading();
-    bursts();
-    time_unit();
+    find_faults_of_time(log_, whole_, report_);
     const bool unit_is_wrong = doubts_of_reading();
     recurring_place();
     mark_in_one_axis();
@@ -61,8 +57,12 @@ class Doctor {
  private:
   static constexpr std::size_t kMostLookedAt = 200'000;
 
-  void add(FindingKind kind, std::string code, std::string what, std::string evidence, std::string setting = {}) {
-    report_.findings.push_back({kind, std::move(code), std::move(what), std::move(evidence), std::move(setting)});
+  template <class... Texts>
+  void add(Texts&&... texts) {
+    add_finding(report_, std::forward<Texts>(texts)...);
+  }
+  [[nodiscard]] bool has_finding(std::initializer_list<std::string_view> codes) const {
+    return gazetrace::has_finding(report_, codes);
   }
   // What the file would be if its numbers were interpreted under other conventions, in a few words.
   template <class Change>
@@ -110,130 +110,6 @@ class Doctor {
     for (const RawFault& fault : whole_->raw.faults) {
       add(FindingKind::fault, fault.code, fault.found, "the rows themselves", fault.setting);
     }
-    // Of stamps that have a fault of their own, the order says nothing new.
-    if (!whole_->is_sorted_by_option && !has_finding({"pairs", "counter-overflow", "rounded-stamps"})) {
-      faults_of_order();
-    }
-  }
-
-  void faults_of_order() {
-    const GazeOrder& order = log_.order;
-    if (order.backward_steps == 0 && order.duplicates == 0) {
-      return;
-    }
-    const bool repeats = order.duplicates > 0 && order.identical_duplicates * 10 >= order.duplicates * 9;
-    // A repeated block of rows goes back in time as well, and one finding for both is enough.
-    const std::string problem = order.backward_steps > 0
-                                    ? fmt::format("line {}: {}", order.first_backward_row, unordered_problem(order))
-                                    : fmt::format("line {}: {}", order.first_duplicate_row, duplicate_problem(order));
-    const std::string seen = fmt::format("{} of {} rows go back in time, {} stand at a time that is there already",
-                                         order.backward_steps, order.rows, order.duplicates);
-    const std::string setting = loses_much(order) ? "" : "`order` sort";
-    if (order.backward_steps * 50 > order.rows) {
-      add(FindingKind::fault, "unordered", "the rows are not in the order of time: " + problem, seen, setting);
-    } else if (repeats) {
-      add(FindingKind::fault, "repeated-rows",
-          fmt::format("{} rows are repeated, the first in line {}", order.duplicates, order.first_duplicate_row),
-          fmt::format("{}; {} of these have the same position, too", seen, order.identical_duplicates), setting);
-    } else if (order.duplicates > 0 && order.backward_steps == 0) {
-      add(FindingKind::fault, "duplicates",
-          fmt::format("{} rows stand at the time of another row with another position: {}", order.duplicates, problem),
-          setting.empty() ? fmt::format("{}; dropping them would keep {} of {} rows: export again with finer stamps",
-                                        seen, order.rows - order.duplicates, order.rows)
-                          : seen,
-          setting);
-    } else {
-      add(FindingKind::fault, "unordered", "some rows are not in the order of time: " + problem, seen, setting);
-    }
-  }
-
-  // Stamps that were taken when a buffer was written: runs of steps that are far shorter than the others.
-  void bursts() {
-    // Where most rows stand in bursts, the median step is that within them.
-    const double median_ns = report_.timing.median_rate_hz > 0 ? 1e9 / report_.timing.median_rate_hz : 0;
-    const double mean_ns =
-        static_cast<double>(report_.span_ns) / static_cast<double>(std::max<std::size_t>(1, log_.samples.size()));
-    const bool are_packets = mean_ns > 4 * median_ns;
-    const double step_ns = are_packets ? mean_ns : median_ns;
-    constexpr std::size_t kShortestRun = 4;
-    constexpr std::size_t kLongestPacket = 64;
-    std::size_t runs = 0;
-    std::size_t rows = 0;
-    std::size_t run = 0;
-    std::int64_t first_row = 0;
-    for (std::size_t i = 1; i <= log_.samples.size(); ++i) {
-      const bool is_short = i < log_.samples.size() &&
-                            static_cast<double>(log_.samples[i].t_ns - log_.samples[i - 1].t_ns) < 0.25 * step_ns;
-      if (!is_short && run >= kShortestRun) {
-        first_row = runs++ == 0 ? log_.samples[i - run - 1].row : first_row;
-        rows += run;
-      }
-      run = is_short ? run + 1 : 0;
-    }
-    if (runs == 0 || (runs == 1 && rows * 200 < log_.samples.size()) ||
-        (are_packets && (runs < 10 || rows > kLongestPacket * runs))) {  // else they are parts between pauses
-      return;
-    }
-    const double seconds = static_cast<double>(report_.span_ns) * 1e-9;
-    add(FindingKind::suspicion, "bursts",
-        fmt::format(
-            "{} rows stand in {} burst{} of far shorter steps, the first from line {} on: stamps of writing, not "
-            "of measuring",
-            rows, runs, runs == 1 ? "" : "s", first_row),
-        fmt::format("{} rows in {:.3f} s are {:.1f} Hz, by the median step {:.1f} Hz; use the tracker's own clock "
-                    "(`time-column`)",
-                    log_.samples.size(), seconds,
-                    static_cast<double>(log_.samples.size() - 1) / std::max(seconds, 1e-9),
-                    report_.timing.median_rate_hz));
-  }
-
-  // The unit of stamps whose exponent differs by `shift` powers of ten, as an option; empty where there is none.
-  [[nodiscard]] std::string time_unit_setting(int shift) const {
-    static constexpr std::array<std::pair<std::string_view, int>, 4> kUnits{
-        {{"ns", 0}, {"us", 3}, {"ms", 6}, {"s", 9}}};
-    const int now = log_.conventions.time_exponent.value;
-    const bool is_named = std::any_of(kUnits.begin(), kUnits.end(), [&](const auto& u) { return u.second == now; });
-    for (const auto& [other, wanted] : kUnits) {
-      if (whole_ != nullptr && is_named && wanted == now + shift) {
-        return fmt::format("`time-unit` {}", other);
-      }
-    }
-    return {};
-  }
-
-  void time_unit() {
-    const double rate = report_.timing.median_rate_hz;
-    if (log_.samples.size() < 10 || !(rate > 0) || has_finding({"bursts"})) {
-      return;
-    }
-    const double nominal = log_.nominal_rate_hz;
-    // Powers of ten between the unit that was read and the unit that is meant.
-    for (const int shift : {3, 6, 9, -3, -6, -9}) {
-      const double meant = rate * std::pow(10.0, -shift);
-      const std::string setting = time_unit_setting(shift);
-      if (setting.empty()) {
-        continue;
-      }
-      if (nominal > 0) {
-        if (meant / nominal > 0.5 && meant / nominal < 2) {
-          add(FindingKind::fault, "time-unit",
-              fmt::format("the stamps are not in {}: the log states {:.6g} Hz, and its stamps give {:.4g} Hz",
-                          time_unit_text(log_.conventions.time_exponent.value), nominal, rate),
-              fmt::format("the stated rate against the median step; the two differ by 10^{}", shift), setting);
-          return;
-        }
-      } else if ((rate > kPlausibleHighHz || rate < kPlausibleLowHz) && meant >= 20 && meant <= 2100) {
-        add(FindingKind::suspicion, "time-unit",
-            fmt::format("the stamps can hardly be in {}: they give {:.4g} Hz, {:.4g} Hz in the other unit",
-                        time_unit_text(log_.conventions.time_exponent.value), rate, meant),
-            "statistics: the median step against the rates that eye trackers have", setting);
-        return;
-      }
-    }
-    if (nominal > 0 && (rate / nominal > 1.2 || rate / nominal < 0.83)) {
-      add(FindingKind::note, "rate", fmt::format("the log states {:.6g} Hz, its stamps give {:.6g} Hz", nominal, rate),
-          "the stated rate against the median step");
-    }
   }
 
   // What the judge of readings says, whom every command asks.
@@ -247,12 +123,6 @@ class Doctor {
     }
     return has_finding({"position-unit", "origin", "beside-the-display"});
   }
-  [[nodiscard]] bool has_finding(std::initializer_list<std::string_view> codes) const {
-    return std::any_of(report_.findings.begin(), report_.findings.end(), [&](const GazeFinding& finding) {
-      return std::find(codes.begin(), codes.end(), finding.code) != codes.end();
-    });
-  }
-
   // The size of the display or of the scene camera's picture; it is a guess where the log was inspected with a guessed
   // size.
   [[nodiscard]] Vec2d picture_px() const {
@@ -350,7 +220,10 @@ class Doctor {
       add(FindingKind::note, "scene-camera",
           "the gaze lies on the picture of a camera on the head: it can be looked at and converted, but is no place on "
           "a display to render from",
-          "the format; where the log has directions, `frame` head takes them; else map gaze onto the display");
+          "the format; " +
+              (whole_ != nullptr && !whole_->raw.way_out.empty()
+                   ? whole_->raw.way_out
+                   : "where the log has directions, `frame` head takes them; else map gaze onto the display"));
     }
     if (loss.samples == 1) {
       add(FindingKind::suspicion, "one-row",
@@ -473,45 +346,53 @@ class Doctor {
   }
 
   // Follows from the worst line: an open question, a fault or a suspicion, a note that nothing good can be said beside.
+  // Says what to do next.
   void verdict() {
-    std::size_t faults = 0;
-    std::size_t helpless = 0;
     std::string questions;
+    std::string helpless;
     std::string notes;
+    const auto append = [](std::string& to, const std::string& text) { to += (to.empty() ? "" : "; ") + text; };
     for (const GazeFinding& finding : report_.findings) {
       if (finding.kind == FindingKind::note) {
         const bool counts = finding.code == "off-screen" || finding.code == "lost" || finding.code == "rate" ||
                             finding.code == "frozen" || finding.code == "scene-camera";
-        notes += counts ? fmt::format("{}{}", notes.empty() ? "" : "; ", finding.what) : "";
+        if (counts) {
+          append(notes, finding.code == "scene-camera" ? finding.what + " (" + finding.evidence + ")" : finding.what);
+        }
         continue;
       }
-      ++faults;
       const bool has_alternatives = finding.setting.find(" or ") != std::string::npos;
       if (finding.is_open) {
-        questions += fmt::format("{}{}: give {}", questions.empty() ? "" : "; ", finding.what, finding.setting);
-      } else {
-        helpless += finding.setting.empty() || has_alternatives ? 1 : 0;
+        append(questions,
+               fmt::format("{} Give {}", finding.what + (finding.what.ends_with('?') ? "" : "."), finding.setting));
+      } else if (finding.setting.empty() || has_alternatives) {
+        append(helpless, finding.what);
       }
       if (!finding.setting.empty() && !has_alternatives &&
           std::find(report_.settings.begin(), report_.settings.end(), finding.setting) == report_.settings.end()) {
         report_.settings.push_back(finding.setting);
       }
     }
-    if (faults == 0) {
-      report_.verdict = (notes.empty() ? "nothing suspicious was found" : "mind this: " + notes) + untested_axes();
-    } else if (!questions.empty()) {
-      report_.verdict = "undecided, and refused until it is said: " + questions;
+    const std::string no_help =
+        "no option mends this, so do as the line says that it is from, export or copy the file again, or use the log "
+        "knowing what is wrong: " +
+        helpless;
+    if (!questions.empty()) {
+      report_.verdict = "undecided, and refused until you say it: " + questions;
+      report_.verdict += helpless.empty() ? "" : "; and " + no_help;
     } else if (report_.settings.empty()) {
-      report_.verdict =
-          "suspicious, and no option mends it for certain: read above what each suspicion is from, then export or copy "
-          "the file again, or use the log knowing what is wrong";
+      report_.verdict = !helpless.empty() ? "suspicious, and " + no_help
+                                          : (notes.empty() ? "nothing suspicious was found" : "mind this: " + notes) +
+                                                untested_axes();
     } else {
       const bool are_several =
           report_.settings.size() > 1 || report_.settings.front().find(" and ") != std::string::npos;
-      report_.verdict = fmt::format("{} mend{}{}", fmt::join(report_.settings, " "), are_several ? "" : "s",
-                                    helpless > 0 ? " a part of it; no option mends the rest: export or copy the "
-                                                   "file again, or use the log knowing what is wrong"
-                                                 : " it");
+      report_.verdict =
+          has_finding({"several-recordings", "display-changes"})
+              ? "the parts are read one at a time: " + fmt::format("{}", fmt::join(report_.settings, " ")) +
+                    " takes the first"
+              : fmt::format("{} mend{} it", fmt::join(report_.settings, " "), are_several ? "" : "s");
+      report_.verdict += helpless.empty() ? "" : "; and " + no_help;
     }
   }
 

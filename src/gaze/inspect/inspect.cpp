@@ -39,6 +39,17 @@ std::string_view to_string(FindingKind kind) {
   return name_of(kind, {"fault", "suspicion", "note"});
 }
 
+void add_finding(GazeInspection& inspection, FindingKind kind, std::string code, std::string what, std::string evidence,
+                 std::string setting) {
+  inspection.findings.push_back({kind, std::move(code), std::move(what), std::move(evidence), std::move(setting)});
+}
+
+bool has_finding(const GazeInspection& inspection, std::initializer_list<std::string_view> codes) {
+  return std::any_of(inspection.findings.begin(), inspection.findings.end(), [&](const GazeFinding& finding) {
+    return std::find(codes.begin(), codes.end(), finding.code) != codes.end();
+  });
+}
+
 namespace {
 
 GazeInspection inspect(const GazeLog& log, const GazeUnderInspection* whole, const GazeInspectOptions& options) {
@@ -114,6 +125,12 @@ GazeUnderInspection load_for_inspection(const std::string& path, GazeReadOptions
   gaze.is_sorted_by_option = gaze.conventions.unordered == UnorderedPolicy::sort;
   gaze.conventions.unordered = UnorderedPolicy::sort;
   gaze.log = interpret(gaze.raw, gaze.conventions);
+  if (!gaze.is_sorted_by_option) {  // what was done for the look alone: the findings say what is wrong with the order
+    std::erase_if(gaze.log.warnings, [](const std::string& warning) {
+      return warning.find(": sorted by time") != std::string::npos ||
+             warning.find("the last row of equal times is kept") != std::string::npos;
+    });
+  }
   return gaze;
 }
 

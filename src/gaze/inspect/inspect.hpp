@@ -43,6 +43,14 @@ std::optional<GazePrecision> measure_precision(const GazeLog& log, const GazePla
 std::optional<GazeDisparity> measure_disparity(const GazeLog& log, const GazePlane& plane);
 std::vector<VorTest> test_vor(const GazeLog& log);
 
+void add_finding(GazeInspection& inspection, FindingKind kind, std::string code, std::string what, std::string evidence,
+                 std::string setting = {});
+// Whether there is a finding with one of these codes.
+bool has_finding(const GazeInspection& inspection, std::initializer_list<std::string_view> codes);
+
+// Of the stamps: their order, their unit, and when they were taken. `whole` as below.
+void find_faults_of_time(const GazeLog& log, const GazeUnderInspection* whole, GazeInspection& inspection);
+
 // Writes the directions of the axes, and the findings about them, into `inspection`. Returns whether the axes are
 // exchanged, or could not be tested because `unit_is_wrong`.
 bool examine_axes(const GazeLog& log, bool unit_is_wrong, GazeInspection& inspection);

@@ -198,7 +198,11 @@ std::string inspection_text(const GazeInspection& r) {
     text.line(to_string(finding.kind), "{} [{}]", finding.what, finding.code);
     text.plain(fmt::format("  from            {}", finding.evidence));
     if (!finding.setting.empty()) {
-      text.plain(fmt::format("  {:<15} {}", finding.is_open ? "answered by" : "mended by", finding.setting));
+      text.plain(fmt::format("  {:<15} {}",
+                             finding.is_open                                                             ? "answered by"
+                             : finding.code == "several-recordings" || finding.code == "display-changes" ? "first part"
+                                                                                                         : "mended by",
+                             finding.setting));
     }
   }
   text.line("verdict", "{}", r.verdict);
