@@ -154,7 +154,6 @@ class GazeOptions(TypedDict, total=False):
     swap_xy: bool | None
     flip_x: bool | None
     flip_y: bool | None
-    decimal_comma: bool | None
     events: Value | None
     trial_start: Value | None
     trial_end: Value | None
