@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gazelog/bids_recording.hpp"
+#include "gazelog/eyelink_block.hpp"
 
 #include <fmt/format.h>
 
@@ -12,15 +13,17 @@
 namespace gazetrace {
 namespace {
 
-// EyeLink's inclusive corners are often written as the size: 1919 x 1079.
+// EyeLink's inclusive corners are often written as the size, 1919 x 1079, or taken for it, 1281 x 1025.
 void mend_resolution(DisplayGeometry& g, RawGaze& raw, const std::string& place) {
   const auto is_corner = [](int n) { return n % 2 == 1 && (n + 1) % 8 == 0; };
-  if (is_corner(g.width_px) && is_corner(g.height_px)) {
+  const bool is_beyond = !is_usual_display_height(g.height_px) && is_usual_display_height(g.height_px - 1);
+  const int change = is_corner(g.width_px) && is_corner(g.height_px) ? 1 : is_beyond && g.width_px % 8 == 1 ? -1 : 0;
+  if (change != 0) {
     raw.warnings.push_back(
         fmt::format("{}: ScreenResolution {}x{} looks like inclusive corners taken for a size; {}x{} is used", place,
-                    g.width_px, g.height_px, g.width_px + 1, g.height_px + 1));
-    ++g.width_px;
-    ++g.height_px;
+                    g.width_px, g.height_px, g.width_px + change, g.height_px + change));
+    g.width_px += change;
+    g.height_px += change;
   }
 }
 

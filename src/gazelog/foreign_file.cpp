@@ -62,17 +62,20 @@ constexpr std::array kBinaryEndings{
 
 // The names in the first object of a JSON text, which tell which columns a CSV of it would have.
 std::string names_in_json(std::string_view line) {
-  std::string names;
-  std::size_t count = 0;
+  std::vector<std::string> names;
   constexpr std::size_t kMostKeys = 12;
-  for (std::size_t at = line.find("\":"); at != std::string_view::npos && count < kMostKeys;
+  for (std::size_t at = line.find("\":"); at != std::string_view::npos && names.size() < kMostKeys;
        at = line.find("\":", at + 1)) {
     const std::size_t begin = line.rfind('"', at - 1);
-    if (begin != std::string_view::npos && begin < at) {
-      names += (count++ == 0 ? "" : ", ") + std::string(line.substr(begin + 1, at - begin - 1));
+    if (begin == std::string_view::npos || begin >= at) {
+      continue;
+    }
+    if (std::string name(line.substr(begin + 1, at - begin - 1));
+        std::find(names.begin(), names.end(), name) == names.end()) {
+      names.push_back(std::move(name));
     }
   }
-  return names;
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 // A table has numbers in some row near its beginning, and names that are no sentences above them.

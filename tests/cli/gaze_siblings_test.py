@@ -137,6 +137,12 @@ class Siblings(ReadingTest):
         text = self.inspect("s05.xdf")
         return refused and "scene camera" in text and "1088x1080" in text, got
 
+    def s06_glasses_2_of_old_firmware(self):
+        "Tobii Glasses 2 without gidx: gp lies on the scene video; neither a screen nor advice to make one of it"
+        lines = [json.dumps({"ts": int(1e6 * t) + 1000, "s": 0, "l": 78000, "gp": [round(x, 4), round(y, 4)]}) for t, x, y in viewers.on_screen(blinks=False)]
+        self.write("s06.json", "\n".join(lines) + "\n")
+        return self.refused("s06.json", ["scene camera"], ["write it as CSV"])
+
     # Directions and what looks like them.
 
     def r01_unity_rotation(self):
@@ -274,6 +280,18 @@ class Siblings(ReadingTest):
         self.write("o02.asc", "** CONVERTED FROM x.edf\n** EYELINK II\nMSG\t1 GAZE_COORDS 0 0 1919 1079\nSTART\t5000 \tLEFT\tSAMPLES\tEVENTS\n"
                               "SAMPLES\tHREF\tLEFT\tRATE\t500.00\tTRACKING\tCR\n" + rows + "END\t9800 \tSAMPLES\tEVENTS\tRES\t35.00\t35.00\n")
         return self.refused("o02.asc", ["HREF", "edf2asc"])
+
+    def o03_corners_in_bids(self):
+        "ScreenResolution 1281x1025 of BIDS is no display: 1280x1024"
+        stem = "sub-01_task-v_"
+        rows = [(round(1000 * t), f"{1280 * x:.2f}", f"{1024 * y:.2f}") for t, x, y in viewers.on_screen(rate_hz=500, blinks=False)]
+        self.write(stem + "recording-eye1_physio.tsv", "\n".join("\t".join(map(str, row)) for row in rows) + "\n")
+        self.write(stem + "recording-eye1_physio.json", json.dumps({
+            "PhysioType": "eyetrack", "SamplingFrequency": 500, "StartTime": 0, "RecordedEye": "left", "Columns": ["timestamp", "x_coordinate", "y_coordinate"],
+            "SampleCoordinateSystem": "gaze-on-screen", "timestamp": {"Units": "ms"}, "x_coordinate": {"Units": "pixel"}, "y_coordinate": {"Units": "pixel"}}))
+        self.write(stem + "events.json", json.dumps({"StimulusPresentation": {"ScreenResolution": [1281, 1025]}}))
+        log = self.import_log(stem + "recording-eye1_physio.tsv")
+        return "# display_px 1280 1024" in log.head and log.near(PLACES, 0.01) > 0.8, log.head[1:3] or log.text[-150:]
 
     # Clocks.
 

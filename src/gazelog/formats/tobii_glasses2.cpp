@@ -28,7 +28,9 @@ struct GazeOfIndex {
 void add_line(const JsonLeaves& json, std::int64_t t_ns, std::int64_t row, std::map<std::int64_t, GazeOfIndex>& gazes) {
   std::int64_t index = 0;
   const JsonLeaf* const gidx = json.find("gidx");
-  if (gidx == nullptr || scaled_integer(gidx->text, 0, index) != NumberStatus::ok) {
+  if (gidx == nullptr && (json.has("gp") || json.has("gd"))) {
+    index = t_ns;  // old firmware: what belongs together has one stamp
+  } else if (gidx == nullptr || scaled_integer(gidx->text, 0, index) != NumberStatus::ok) {
     return;
   }
   GazeOfIndex& gaze = gazes[index];
@@ -104,7 +106,8 @@ void add_samples(const GazeOfIndex& gaze, RawGaze& raw) {
 double sniff_gaze_tobii_glasses2(const GazeFile& file) {
   const std::string_view head = head_of(file, 4096);
   const bool object = head.starts_with("{\"ts\"");
-  const bool known = head.find("\"gidx\"") != std::string_view::npos || head.find("\"pts\"") != std::string_view::npos;
+  const auto has = [&](std::string_view name) { return head.find(name) != std::string_view::npos; };
+  const bool known = has("\"gidx\"") || has("\"pts\"") || has("\"gp\"");
   return object ? known ? 0.99 : 0.7 : 0.0;
 }
 
