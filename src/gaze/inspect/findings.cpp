@@ -366,22 +366,19 @@ class Doctor {
         append(questions,
                fmt::format("{} Give {}", finding.what + (finding.what.ends_with('?') ? "" : "."), finding.setting));
       } else if (finding.setting.empty() || has_alternatives) {
-        append(helpless, finding.what);
+        append(helpless, fmt::format("{} ({}{})", finding.what, finding.evidence,
+                                     finding.setting.empty() ? "" : "; " + finding.setting));
       }
       if (!finding.setting.empty() && !has_alternatives &&
           std::find(report_.settings.begin(), report_.settings.end(), finding.setting) == report_.settings.end()) {
         report_.settings.push_back(finding.setting);
       }
     }
-    const std::string no_help =
-        "no option mends this, so do as the line says that it is from, export or copy the file again, or use the log "
-        "knowing what is wrong: " +
-        helpless;
     if (!questions.empty()) {
       report_.verdict = "undecided, and refused until you say it: " + questions;
-      report_.verdict += helpless.empty() ? "" : "; and " + no_help;
+      report_.verdict += helpless.empty() ? "" : "; besides, no option alone mends this: " + helpless;
     } else if (report_.settings.empty()) {
-      report_.verdict = !helpless.empty() ? "suspicious, and " + no_help
+      report_.verdict = !helpless.empty() ? "suspicious, and no option alone mends it: " + helpless
                                           : (notes.empty() ? "nothing suspicious was found" : "mind this: " + notes) +
                                                 untested_axes();
     } else {
@@ -392,7 +389,7 @@ class Doctor {
               ? "the parts are read one at a time: " + fmt::format("{}", fmt::join(report_.settings, " ")) +
                     " takes the first"
               : fmt::format("{} mend{} it", fmt::join(report_.settings, " "), are_several ? "" : "s");
-      report_.verdict += helpless.empty() ? "" : "; and " + no_help;
+      report_.verdict += helpless.empty() ? "" : "; besides, no option alone mends this: " + helpless;
     }
   }
 
