@@ -58,7 +58,7 @@ class Guesses(harness.CliTest):
         self.count = {}
         self.wrong = []
 
-    def rows_of(self, name, options, most=2000):
+    def rows_of(self, name, options, most=4000):
         """Usable and lost rows of one gaze in the canonical file, and the display's size."""
         self.run_ok("gaze", "import", SAMPLES / name, "-o", "true.csv", "--overwrite", *options)
         lines = (self.folder / "true.csv").read_text().splitlines()
