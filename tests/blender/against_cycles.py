@@ -5,6 +5,7 @@ Runs inside Blender (blender -b --factory-startup -P against_cycles.py -- FOLDER
 bpy. For each scene it prints one JSON object, and writes `SCENE.png` into the folder: Cycles left, gazetrace right.
 
 cube   the file that Blender begins with, with the add-on as it begins, and pictures through the view
+matte  the same cube without a gloss: Blender's is another than glTF's
 room   a closed room under a scaled rectangle and a coloured disc
 shot   ten frames from 1001 under a sky with its sun: a camera that moves, a lens that is shifted, a region of the
        picture, a panel that moves
@@ -93,6 +94,17 @@ def cube() -> None:
     scene.gazetrace.display_pictures = True
 
 
+def matte_cube() -> None:
+    """What Blender begins with, without its gloss."""
+    cube()
+    surface = bpy.data.objects["Cube"].active_material.node_tree.nodes["Principled BSDF"]
+    for socket in ("Specular", "Specular IOR Level"):
+        if socket in surface.inputs:
+            surface.inputs[socket].default_value = 0
+    surface.inputs["Roughness"].default_value = 1
+    further(f'sampling = "uniform"\nfilter = "none"\ndiffuse = "lambert"\nbounces = {BOUNCES}\naccumulate = "off"\n')
+
+
 def room() -> None:
     """4 x 3 x 2.5 m, closed, with two area lights and a box."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -141,7 +153,7 @@ def shot() -> None:
     further(f'sampling = "uniform"\nfilter = "none"\ndiffuse = "lambert"\nbounces = {BOUNCES}\naccumulate = "off"\n')
 
 
-SCENES = {"cube": cube, "room": room, "shot": shot}
+SCENES = {"cube": cube, "matte": matte_cube, "room": room, "shot": shot}
 
 
 def size_of(scene: bpy.types.Scene) -> None:
