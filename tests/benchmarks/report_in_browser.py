@@ -184,6 +184,10 @@ def use_diagrams(browser, checks):
             checks.that(browser.run("return document.getElementById('diagrams').innerHTML") == before, f"{select} can be undone")
 
 
+def offers(browser, selector):
+    return browser.run("return document.querySelector(arguments[0]).offsetParent !== null", selector)
+
+
 def use_viewer(browser, checks):
     frames = int(browser.run("return document.getElementById('scrub').max")) + 1
     leave_controls(browser)
@@ -195,6 +199,10 @@ def use_viewer(browser, checks):
         checks.that(pressed(browser, f"[data-mode={mode}]"), f"button {mode} is pressed")
     # Gaze and rings, by key and button. What is undone must give the same picture.
     for key, name in (("g", "gaze"), ("r", "rings"), ("z", "zoom")):
+        there = browser.run("return JSON.parse(document.getElementById('data').textContent).sets[0].frames.some((frame) => arguments[0] === 'rings' ? frame.rings.length > 0 : frame.gaze !== null)", name)
+        checks.that(offers(browser, f"#toggle-{name}") == (there or name == "zoom"), f"button {name} is there where there is something to show")
+        if not offers(browser, f"#toggle-{name}"):
+            continue
         leave_controls(browser)
         checks.changes(lambda: browser.key(key), f"key {key}", lambda: browser.key(key))
         checks.changes(lambda: browser.click(f"#toggle-{name}"), f"button {name}", lambda: browser.click(f"#toggle-{name}"))
@@ -229,9 +237,10 @@ def use_viewer(browser, checks):
     checks.that(pressed(browser, "[data-mode=blink]"), "button blink is pressed")
     browser.click("[data-mode=slider]")
     # The map of FLIP of B: there for runs of a sweep with FLIP, not for the reference.
-    leave_controls(browser)
-    checks.changes(lambda: browser.key("f"), "key f", lambda: browser.key("s"))
-    checks.changes(lambda: browser.click("[data-mode=flip]"), "button flip", lambda: browser.click("[data-mode=slider]"))
+    if offers(browser, "[data-mode=flip]"):
+        leave_controls(browser)
+        checks.changes(lambda: browser.key("f"), "key f", lambda: browser.key("s"))
+        checks.changes(lambda: browser.click("[data-mode=flip]"), "button flip", lambda: browser.click("[data-mode=slider]"))
     # Which runs.
     for select in ("#view-a", "#view-b"):
         count = browser.run("return document.querySelector(arguments[0]).options.length", select)

@@ -256,6 +256,7 @@
     draw();
   }, kBlinkMs);
 
+  const has = {};
   const runOf = (select) => state.set.runs[Number(select.value)];
   const chooseSet = () => {
     state.set = sets.find((set) => set.id === viewSet.value);
@@ -264,7 +265,13 @@
     fillSelect(viewB, entries, entries.length > 1 ? "1" : "0");
     scrub.max = String(state.set.frames.length - 1);
     scrub.value = "0";
+    // Nothing is offered that this set does not have.
+    has.gaze = state.set.frames.some((frame) => frame.gaze !== null);
+    has.rings = state.set.frames.some((frame) => frame.rings.length > 0);
+    has.maps = state.set.runs.some((run) => run.maps.some((map) => map !== null));
+    document.querySelectorAll("[data-needs]").forEach((one) => { one.hidden = !has[one.dataset.needs]; });
     chooseRuns();
+    if (state.mode === "flip" && !has.maps) setMode("slider");
   };
   const chooseRuns = () => {
     state.a = runOf(viewA);
@@ -299,8 +306,8 @@
 
   const kKeys = {
     s: () => setMode("slider"), 1: () => setMode("a"), 2: () => setMode("b"), d: () => setMode("difference"), b: () => setMode("blink"),
-    f: () => setMode("flip"),
-    g: () => toggle("gaze"), r: () => toggle("rings"), z: () => toggle("zoom"),
+    f: () => has.maps && setMode("flip"),
+    g: () => has.gaze && toggle("gaze"), r: () => has.rings && toggle("rings"), z: () => toggle("zoom"),
     ArrowLeft: () => step(-1), ArrowRight: () => step(1), " ": () => play(!state.playing),
   };
   const isViewerVisible = () => {
