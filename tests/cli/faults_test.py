@@ -261,7 +261,7 @@ class Faults(harness.CliTest):
 FIELD = harness.SHARED / "field-cases" / "faults"
 
 
-@unittest.skipUnless(FIELD.is_dir(), f"{FIELD} is absent (GAZETRACE_SHARED_DIR)")
+@unittest.skipUnless(FIELD.is_dir(), f"{FIELD} is not here (GAZETRACE_SHARED_DIR)")
 class FieldCases(harness.CliTest):
     """Scripts and files after faults that were met, each with what is right in its README."""
 
@@ -331,7 +331,7 @@ class FieldCases(harness.CliTest):
         for name in ("table_deep.toml", "key_deep.toml"):
             self.assert_refused(["render", "--config", f"made/{name}"], [name, "too deep"])
         if made.returncode != 0:
-            self.skipTest("no Pillow for the pictures: " + made.stderr[-200:])
+            self.skipTest("Pillow, which draws the pictures, is not here (pip install pillow): " + made.stderr[-200:])
         for path in (self.folder / "made/claims_30000x15000.hdr", FIELD / "env_only_Z.exr"):
             self.assert_refused(["render", "box.gltf", *STILL, "--env", str(path), "--max-memory", "1G", "-o", "a.png"], [path.name])
 

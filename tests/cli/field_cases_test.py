@@ -103,7 +103,7 @@ class FieldCases(harness.CliTest):
 
 
 def test_of(kind):
-    return unittest.skipUnless(INPUTS.exists(), "needs GAZETRACE_SHARED_DIR")(lambda self: self.check(kind))
+    return unittest.skipUnless(INPUTS.exists(), f"{INPUTS} is not here (GAZETRACE_SHARED_DIR)")(lambda self: self.check(kind))
 
 
 for each in KINDS:
