@@ -65,6 +65,7 @@ def export_moving(scene: bpy.types.Scene, frames: FrameRange, path: Path) -> Glb
         with time_for_exporter(scene, frames):
             run_exporter(path)
     glb = Glb(path)
+    drop_pointers(glb.document)
     scale_times(glb, scene.render.fps_base, frames.seconds(frames.first) - float(frames.first / frames.fps))
     add_area_lights(glb, scene, matrices, frames.shown)
     animate(glb, matrices, frames)
@@ -78,7 +79,29 @@ def run_exporter(path: Path) -> None:
     except (AttributeError, KeyError):
         raise Refusal("Blender's glTF exporter is off", "switch on the add-on 'glTF 2.0 format'") from None
     options = {name: value for name, value in EXPORTER_OPTIONS.items() if name in known}
-    bpy.ops.export_scene.gltf(filepath=str(path), **options)
+    if bpy.app.version[:2] == (4, 2):
+        options["export_pointer_animation"] = True  # else that of 4.2 looks for values of cameras that it did not keep
+    # It knows these by id(), which changes where nobody holds them.
+    held = [*bpy.data.cameras, *bpy.data.lights, *bpy.data.materials, *bpy.data.objects, *bpy.data.meshes]
+    try:
+        bpy.ops.export_scene.gltf(filepath=str(path), **options)
+    except RuntimeError as error:  # of 4.2: where bones or shape keys move a material's mesh
+        last = next((line for line in reversed(str(error).splitlines()) if line and not line.startswith("Location")), "")
+        raise Refusal(f"Blender's glTF exporter failed: {last.strip()}", "export it by a newer Blender") from error
+    held.clear()
+
+
+def drop_pointers(document: dict) -> None:
+    """Takes out what moves something other than nodes and weights."""
+    for animation in document.get("animations", []):
+        animation["channels"] = [channel for channel in animation["channels"] if channel["target"]["path"] != "pointer"]
+    if "animations" in document:
+        document["animations"] = [animation for animation in document["animations"] if animation["channels"]]
+        if not document["animations"]:
+            del document["animations"]
+    for key in ("extensionsUsed", "extensionsRequired"):
+        if key in document:
+            document[key] = [name for name in document[key] if name != "KHR_animation_pointer"]
 
 
 def place_camera(document: dict, object_name: str, projection: Projection, name: str) -> None:

@@ -116,9 +116,9 @@ TEST(Display, ErrorsNameTheField) {
   EXPECT_EQ(with([](auto& d) { d.height_px = -1; }),
             "the display's height in pixels is -1, not a positive number; give `screen-px`, or `screen` with a name");
   EXPECT_EQ(with([](auto& d) { d.width_cm = std::nan(""); }),
-            "the display's width in cm is nan, not a positive number; give the size of its active area in cm");
+            "the display's width in cm is nan, not a positive number; give `screen-cm`, the size of its active area");
   EXPECT_EQ(with([](auto& d) { d.height_cm = 0; }),
-            "the display's height in cm is not stated; give the size of its active area in cm");
+            "the display's height in cm is not stated; give `screen-cm`, the size of its active area");
   EXPECT_EQ(with([](auto& d) { d.distance_cm = std::numeric_limits<double>::infinity(); }),
             "the display's distance from the eye in cm is inf, not a positive number; give `screen-distance-cm`");
   EXPECT_EQ(with([](auto& d) { d.distance_cm = 0; }),
