@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # Debian's OpenColorIO comes with a pkg-config file only. Defines OpenColorIO::OpenColorIO.
 find_package(OpenColorIO CONFIG QUIET)
-if(NOT TARGET OpenColorIO::OpenColorIO)
+if(TARGET OpenColorIO::OpenColorIO)  # also where another package asked before
+  set(OpenColorIO_FOUND TRUE)
+else()
   find_path(OpenColorIO_INCLUDE_DIR OpenColorIO/OpenColorIO.h)
   find_library(OpenColorIO_LIBRARY OpenColorIO)
   if(OpenColorIO_INCLUDE_DIR AND EXISTS "${OpenColorIO_INCLUDE_DIR}/OpenColorIO/OpenColorABI.h")

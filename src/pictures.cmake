@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # libgazetrace_pictures.so: the only file that calls OpenImageIO, as a module that the library opens when it first needs a
 # picture (core/picture_module.hpp).
+if(GAZETRACE_WHEEL)
+  find_package(WebP REQUIRED)  # a static OpenImageIO names it, and does not find it
+endif()
 find_package(OpenImageIO REQUIRED)
 # Debian's OpenImageIO names OpenCV's headers, which its -dev package does not bring along and nothing here needs.
 get_target_property(oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
@@ -15,6 +18,9 @@ set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRE
 add_library(gazetrace_pictures MODULE core/open_image_io.cpp)
 target_include_directories(gazetrace_pictures PRIVATE ${PROJECT_SOURCE_DIR}/include ${CMAKE_CURRENT_SOURCE_DIR})
 target_link_libraries(gazetrace_pictures PRIVATE gazetrace_flags OpenImageIO::OpenImageIO)
+if(GAZETRACE_WHEEL)  # whose OpenImageIO is a static library, of which the module uses a part and shows nothing
+  target_link_options(gazetrace_pictures PRIVATE LINKER:--gc-sections,--exclude-libs,ALL)
+endif()
 set(picture_module_dir ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR})
 set_target_properties(gazetrace_pictures PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${picture_module_dir}
   CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
