@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "metrics/flip_kernels.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -64,7 +65,9 @@ FlipKernels make_flip_kernels(double pixels_per_degree) {
   kernels.blue_yellow_1 = scaled(blue_yellow_1, both);
   kernels.blue_yellow_2 = scaled(blue_yellow_2, both);
 
-  const double sigma_px = 0.5 * kFeatureDeg * pixels_per_degree;
+  // Kernels of three pixels, once balanced, do not depend on sigma; below this one their outer weights would underflow.
+  constexpr double kLeastSigmaPx = 0.03;
+  const double sigma_px = std::max(0.5 * kFeatureDeg * pixels_per_degree, kLeastSigmaPx);
   const int feature_radius = static_cast<int>(std::ceil(3 * sigma_px));
   kernels.feature_radius_px = feature_radius;
   std::vector<double> gaussian;

@@ -12,6 +12,7 @@
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/fovvideovdp.hpp"
+#include "metrics/flip_kernels.hpp"
 
 namespace gazetrace {
 namespace {
@@ -146,6 +147,16 @@ TEST(Flip, GreenAgainstBlueIsOneAtAnyDistance) {
 }
 
 // Tiles are no part of the result: a picture shifted by a few pixels has the same map, shifted, away from the border.
+// Of three pixels, a balanced first derivative is (1, 0, -1) and a second one (1/2, -1, 1/2), however narrow the
+// Gaussian.
+TEST(Flip, FewPixelsADegreeStillHaveEdges) {
+  for (const double pixels_per_degree : {0.01, 0.3, 0.7, 2.0}) {
+    const FlipKernels kernels = make_flip_kernels(pixels_per_degree);
+    EXPECT_THAT(kernels.edge, testing::ElementsAre(1.0F, 0.0F, -1.0F)) << pixels_per_degree;
+    EXPECT_THAT(kernels.point, testing::ElementsAre(0.5F, -1.0F, 0.5F)) << pixels_per_degree;
+  }
+}
+
 TEST(Flip, TilesLeaveNoTrace) {
   const ImageRgb reference = noise(300, 170, 5);
   const ImageRgb test = noise(300, 170, 6);
