@@ -143,7 +143,7 @@ std::string EyeMotion::if_degrees(double degrees) const {
       fmt::format("the eye would move over {:.3g} x {:.3g} degrees", degrees * x.spread(), degrees * y.spread());
   if (saccades) {
     const double size = degrees * saccades->amplitude;
-    text += fmt::format(", and its saccades of {:.2g} degrees last {:.0f} ms, where an eye's take {:.0f}", size,
+    text += fmt::format(", and its saccades of {:.2g} degrees would last {:.0f} ms, where an eye's last {:.0f}", size,
                         saccades->duration_ms, kLeastMs + kMsPerDegree * size);
   }
   return text;

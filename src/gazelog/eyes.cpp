@@ -460,7 +460,7 @@ void choose_eyes(GazeLog& log, const RowsOfEyes& rows) {
   note_taken(log, preferred == Eye::cyclopean ? TakenEye::mean : taken_of(preferred), evidence, false,
              take_turns             ? "of the one that was recorded: the eyes take turns and are never seen at once"
              : plane.knows_angles() ? "in angle"
-                                    : "in places: angles are not known");
+                                    : "of the places, since no angles are known");
   if (take_turns) {
     log.warnings.push_back(fmt::format(
         "{}: the recorded eye changes: the eyes are never seen at once, and the gaze is that of the one that is there; "

@@ -220,8 +220,11 @@ class Judge {
     constexpr double kFarTooLarge = 10;
     constexpr double kSmallDeg = 8;
     constexpr double kLargeDeg = 8;
-    const bool is_too_small = factor && *factor > kFarTooSmall * degrees &&
-                              degrees_of_unit() * std::max(motion->x.spread(), motion->y.spread()) < kSmallDeg;
+    // Jumps that are tiny beside the way that the eye goes, as in pursuit, are noise and tell nothing.
+    constexpr double kLeastShare = 0.1;
+    const double spread = motion ? std::max(motion->x.spread(), motion->y.spread()) : 0.0;
+    const bool is_too_small = factor && *factor > kFarTooSmall * degrees && degrees_of_unit() * spread < kSmallDeg &&
+                              motion->saccades->amplitude > kLeastShare * spread;
     const bool is_too_large =
         factor && *factor * kFarTooLarge < degrees && degrees * motion->saccades->amplitude > kLargeDeg;
     if (is_too_small || is_too_large) {
@@ -287,12 +290,12 @@ class Judge {
           c_.axes.evidence);
     } else if (backwards * 2 > count) {
       add({"axes",
-           fmt::format("the axes {}: {} of {} directions point backwards",
-                       c_.axes.evidence == Evidence::statistics ? "are undecided" : "can hardly be right", backwards,
+           fmt::format("the axis convention {}: {} of {} directions point behind the head",
+                       c_.axes.evidence == Evidence::statistics ? "is unknown" : "can hardly be right", backwards,
                        count),
            fmt::format(
-               "in {} axes; they look ahead in unity (x to the right), in sranipal (x to the left) and in cv (y "
-               "down)",
+               "in {} axes, which were assumed; they look ahead in unity (x to the right, y up), in sranipal (x to "
+               "the left, y up) and in cv (x to the right, y down). The program that wrote the file tells which",
                to_string(c_.axes.value)),
            "`axes` unity, sranipal or cv"},
           c_.axes.evidence);

@@ -58,8 +58,8 @@ class Words(harness.CliTest):
         # What is undecided says what would decide it.
         for axis in ("axis x", "axis y"):
             self.assertIn("undecided: ", lines[axis])
-            self.assertIn("To decide it, ", lines[axis])
-        self.assertIn("see there how to decide it", lines["verdict"])
+            self.assertIn("To check it, ", lines[axis])
+        self.assertIn("the lines above say how to check it", lines["verdict"])
         for jargon in ("jitter 0", "middle half", "like blinks", "runs of one position"):
             self.assertNotIn(jargon, text)
 

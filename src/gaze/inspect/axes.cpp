@@ -23,10 +23,10 @@ class Axes {
     for (const char axis : {'x', 'y'}) {
       report_.axes.push_back(
           {axis, AxisVerdict::undecided,
-           fmt::format("the log holds nothing to test it against. To decide it, look at a target at the {} of the view "
-                       "and see in 'gazetrace gaze report' that the gaze goes there, or export the tracker's fixations "
-                       "with the gaze",
-                       axis == 'x' ? "left edge" : "top")});
+           fmt::format("the log holds nothing to test it against, so {} could be exchanged. To check it, find a moment "
+                       "when the person looked at something {}, and see in 'gazetrace gaze report' whether the gaze "
+                       "goes there",
+                       axis == 'x' ? "left and right" : "up and down", axis == 'x' ? "on the left" : "at the top")});
     }
     if (unit_is_wrong) {
       report_.axes[0].evidence = report_.axes[1].evidence = "not tested: the unit or the origin is wrong";

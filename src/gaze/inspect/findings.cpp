@@ -287,9 +287,9 @@ class Doctor {
     if (const auto& display = log_.conventions.display;
         display && display->evidence == Evidence::statistics && log_.kind == GazeKind::screen) {
       add(FindingKind::note, "display-unknown",
-          "the display's size is not stated; a usual one was taken to look at the log, and what is beside it is not "
-          "known",
-          "statistics: " + display->detail + "; reading for anything else needs `screen-px` W,H");
+          "the file does not state the display's size: this report assumes a usual one, and cannot tell which gaze "
+          "was beside the display",
+          "statistics: " + display->detail + "; every other command needs `screen-px` W,H");
     }
   }
 
@@ -341,8 +341,9 @@ class Doctor {
         names += fmt::format("{}{}", names.empty() ? "" : " and ", test.axis);
       }
     }
-    return names.empty() ? ""
-                         : fmt::format("; the direction of {} could not be tested, see there how to decide it", names);
+    return names.empty()
+               ? ""
+               : fmt::format("; the direction of {} could not be tested: the lines above say how to check it", names);
   }
 
   // Follows from the worst line: an open question, a fault or a suspicion, a note that nothing good can be said beside.
@@ -375,7 +376,7 @@ class Doctor {
       }
     }
     if (!questions.empty()) {
-      report_.verdict = "undecided, and refused until you say it: " + questions;
+      report_.verdict = "undecided, and other commands refuse the file until you state it: " + questions;
       report_.verdict += helpless.empty() ? "" : "; besides, no option alone mends this: " + helpless;
     } else if (report_.settings.empty()) {
       report_.verdict = !helpless.empty() ? "suspicious, and no option alone mends it: " + helpless
@@ -387,9 +388,12 @@ class Doctor {
       report_.verdict =
           has_finding({"several-recordings", "display-changes"})
               ? "the parts are read one at a time: " + fmt::format("{}", fmt::join(report_.settings, " ")) +
-                    " takes the first"
+                    " takes the first, 2 the second"
               : fmt::format("{} mend{} it", fmt::join(report_.settings, " "), are_several ? "" : "s");
       report_.verdict += helpless.empty() ? "" : "; besides, no option alone mends this: " + helpless;
+    }
+    if (has_finding({"display-unknown"})) {
+      report_.verdict += "; other commands also need `screen-px` W,H, the display's size";
     }
   }
 

@@ -80,11 +80,12 @@ void bursts(const GazeLog& log, GazeInspection& report) {
   const double seconds = static_cast<double>(report.span_ns) * 1e-9;
   add_finding(
       report, FindingKind::suspicion, "bursts",
-      fmt::format("{} rows stand in {} burst{} of far shorter steps, the first from line {} on: stamps of writing, not "
-                  "of measuring",
-                  rows, runs, runs == 1 ? "" : "s", first_row),
-      fmt::format("{} rows in {:.3f} s are {:.1f} Hz, by the median step {:.1f} Hz; use the tracker's own clock "
-                  "(`time-column`)",
+      fmt::format(
+          "the times of {} rows, in {} burst{} from line {} on, tell when a row was written, and not when the eye "
+          "was measured",
+          rows, runs, runs == 1 ? "" : "s", first_row),
+      fmt::format("{} rows in {:.3f} s are {:.1f} Hz, by the median step {:.1f} Hz; name a column of the tracker's "
+                  "own time by `time-column` NAME if the file has one, or export it again with that time",
                   log.samples.size(), seconds, static_cast<double>(log.samples.size() - 1) / std::max(seconds, 1e-9),
                   report.timing.median_rate_hz));
 }

@@ -166,7 +166,8 @@ TEST_F(GazeAxisFindings, WithoutAWitnessItCannotBeToldWhich) {
 TEST_F(GazeAxisFindings, TheVerdictSaysWhichAxesWereNotTested) {
   EXPECT_EQ(inspect("a.asc", two_eyes(std::nullopt, true)).verdict, "nothing suspicious was found");
   EXPECT_EQ(inspect("b.asc", two_eyes(std::nullopt, false)).verdict,
-            "nothing suspicious was found; the direction of x and y could not be tested, see there how to decide it");
+            "nothing suspicious was found; the direction of x and y could not be tested: the lines above say how to "
+            "check it");
 }
 
 }  // namespace

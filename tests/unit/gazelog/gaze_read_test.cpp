@@ -92,7 +92,7 @@ TEST_F(GazeRead, DirectionsAreNormalized) {
 
 TEST_F(GazeRead, BackwardDirectionsAreRefused) {
   EXPECT_THAT([&] { read("t[s],dx,dy,dz\n0,0,0,1\n1,0.6,0,0.8\n"); },
-              ThrowsMessage<Error>(AllOf(HasSubstr("2 of 2 directions point backwards"),
+              ThrowsMessage<Error>(AllOf(HasSubstr("2 of 2 directions point behind the head"),
                                          HasSubstr("log.csv -o gaze.csv `axes` unity"))));
   GazeReadOptions options;
   options.columns.axes = GazeAxes::unity;
