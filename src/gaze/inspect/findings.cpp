@@ -218,8 +218,8 @@ class Doctor {
     };
     if (log_.kind == GazeKind::scene_camera) {
       add(FindingKind::note, "scene-camera",
-          "the gaze lies on the picture of a camera on the head: it can be looked at and converted, but is no place on "
-          "a display to render from",
+          "the gaze lies on the picture of a camera on the head, which is no fault: it can be looked at and converted, "
+          "but nothing can be rendered from it, since it is no place on a display",
           "the format; " +
               (whole_ != nullptr && !whole_->raw.way_out.empty()
                    ? whole_->raw.way_out
@@ -350,6 +350,7 @@ class Doctor {
   // Says what to do next.
   void verdict() {
     std::string questions;
+    std::string changes;  // what changes between parts
     std::string helpless;
     std::string notes;
     const auto append = [](std::string& to, const std::string& text) { to += (to.empty() ? "" : "; ") + text; };
@@ -362,10 +363,11 @@ class Doctor {
         }
         continue;
       }
+      changes = finding.code == "display-changes" ? finding.what + ", so " : changes;
       const bool has_alternatives = finding.setting.find(" or ") != std::string::npos;
       if (finding.is_open) {
-        append(questions,
-               fmt::format("{} Give {}", finding.what + (finding.what.ends_with('?') ? "" : "."), finding.setting));
+        append(questions, fmt::format("{} {} {}", finding.what + (finding.what.ends_with('?') ? "" : "."),
+                                      has_alternatives ? "Ask who recorded it, then give" : "Give", finding.setting));
       } else if (finding.setting.empty() || has_alternatives) {
         append(helpless, fmt::format("{} ({}{})", finding.what, finding.evidence,
                                      finding.setting.empty() ? "" : "; " + finding.setting));
@@ -385,15 +387,16 @@ class Doctor {
     } else {
       const bool are_several =
           report_.settings.size() > 1 || report_.settings.front().find(" and ") != std::string::npos;
-      report_.verdict =
-          has_finding({"several-recordings", "display-changes"})
-              ? "the parts are read one at a time: " + fmt::format("{}", fmt::join(report_.settings, " ")) +
-                    " takes the first, 2 the second"
-              : fmt::format("{} mend{} it", fmt::join(report_.settings, " "), are_several ? "" : "s");
+      report_.verdict = has_finding({"several-recordings", "display-changes"})
+                            ? fmt::format("{}each part is read by itself: {} takes the first, 2 the second", changes,
+                                          fmt::join(report_.settings, " "))
+                            : fmt::format("{} mend{} it", fmt::join(report_.settings, " "), are_several ? "" : "s");
       report_.verdict += helpless.empty() ? "" : "; besides, no option alone mends this: " + helpless;
     }
     if (has_finding({"display-unknown"})) {
-      report_.verdict += "; other commands also need `screen-px` W,H, the display's size";
+      report_.verdict +=
+          "; other commands also need `screen-px` W,H: ask for the display's resolution, since the size "
+          "above is a guess";
     }
   }
 
