@@ -36,10 +36,16 @@ def draw_all(results, with_pdf=False):
     made = [diagram for diagram in made if diagram]
     taken = set()
     for diagram in made:
-        stem = "_".join(re.sub(r"[^A-Za-z0-9.-]", "-", part) for part in (diagram.kind, *((diagram.row,) if diagram.row else diagram.place), diagram.metric) if part)
+        stem = "_".join(re.sub(r"[^A-Za-z0-9.-]", "-", part) for part in (diagram.kind, *((diagram.row,) if diagram.row else diagram.place), diagram.metric) if part)[:200]  # names of files end at 255
         diagram.name = next(name for name in (stem, *(f"{stem}-{n}" for n in range(2, 10000))) if name not in taken)
         taken.add(diagram.name)
     return made
+
+
+def _title(place, more="", most=60):
+    """What fits above the axes: a longer name would leave them no room."""
+    name = words.place(*place)
+    return (name if len(name + more) <= most else name[:most - len(more) - 1] + "…") + more
 
 
 def _finish(fig, kind, place, metric, row, title, numbers, with_pdf):
@@ -108,7 +114,7 @@ def _pareto(results, place, metric, with_pdf):
     title = f"{metric.name} against time, {words.place(*place)}"
     fronts = _fronts(results, place, metric)
     with drawing.figure(4.6, 3.9) as (fig, axes):
-        axes.set_title(words.place(*place))
+        axes.set_title(_title(place))
         _limits(axes.xaxis, _span([time for _, time, _ in points]))
         _limits(axes.yaxis, _span([score for *_, score in points]))
         axes.set_xlabel("time of a frame [s]")
@@ -148,7 +154,7 @@ def _bands(results, test, metric, with_pdf):
     title = f"{metric.name} by eccentricity and region, {words.place(*test.place)}: {test.label}"
     bands = [part for part in parts if part in results.bands]
     with drawing.figure(4.6, 3.7) as (fig, axes):
-        axes.set_title(f"{words.place(*test.place)}: {test.short}")
+        axes.set_title(_title(test.place, f": {test.short}"))
         _limits(axes.yaxis, _span([score for row in rows for part in parts if (score := row.score(metric.name, part))]))
         step = 0.7 / len(rows)
         for r, row in enumerate(rows):
@@ -188,7 +194,7 @@ def _over_time(results, test, metric, with_pdf):
     title = f"Speed and {metric.name} over time, {words.place(*test.place)}: {test.label}"
     with drawing.figure(4.6, 4.4, nrows=2, sharex=True) as (fig, (above, below)):
         fig.get_layout_engine().set(hspace=0.14)  # where the colors of the eye's strip are named
-        above.set_title(f"{words.place(*test.place)}: {test.short}")
+        above.set_title(_title(test.place, f": {test.short}"))
         for axes, key, label in ((above, "time_s", "time of a frame [s]"), (below, metric.name, f"{metric.words},\n{metric.better}")):  # one above the other in half the height
             known = table[key].dropna()
             if len(known):

@@ -58,7 +58,7 @@ def losses(compared):
         "in": [words.part(part) for part in lost.part],
         "foveated": lost.ours,
         "uniform": lost.theirs,
-        "uniform run": [ROLES[row.role].words for row in lost.baseline],
+        "uniform run": [(ROLES[row.role].words, f"{words.with_interval(reached)} of its time" if (reached := row.estimate("reached")) else "") for row in lost.baseline],
         "foveated run": [test.name for test in lost.test],
         "scene and gaze": [words.place(*test.place) for test in lost.test],
     })
@@ -75,7 +75,7 @@ def headline(results, compared):
     counts = compared[compared.part == "whole"].verdict.value_counts()
     if counts.sum():
         undecided = counts.get("not told apart", 0) + counts.get("under the reference's noise", 0)
-        text += (f" Beside uniform sampling of the same cost they scored better in {counts.get('better', 0)} of {counts.sum()} comparisons, "
+        text += (f" Over whole frames, beside uniform sampling of the same cost, they scored better in {counts.get('better', 0)} of {counts.sum()} comparisons, "
                  f"worse in {counts.get('worse', 0)}, and not told apart in {undecided}.")
     if not all(speed.tells for speed in speeds):
         text += " Too few repeats were made for intervals of the speed-up: more would say how sure it is."
@@ -109,12 +109,17 @@ def caveats(results):
 
 def _nothing_saved(where, test, family):
     """A sampling that saves nothing is uniform sampling under another name, and its controls are the same picture."""
-    ours = test.raw.get("spp_mean")
+    ours, ours_of = test.raw.get("spp_mean"), test.raw.get("scores") or {}
     for row in family:
-        theirs = row.raw.get("spp_mean")
+        theirs, theirs_of = row.raw.get("spp_mean"), row.raw.get("scores") or {}
         if row.role == "uniform-reference-rate" and ours and theirs and theirs / ours < 1.1:
             return [f"{where}: it traces {words.number(ours, 3)} samples a pixel where uniform has {words.number(theirs, 3)}, so that next to nothing is "
                     "saved at this size on this screen, and controls with a wrong gaze show the same picture. A larger frame, or another sampling, would change that."]
+        scores = [(one.mean, other.mean) for metric in (ours_of.keys() & theirs_of.keys() if row.role == "equal-samples" else ())
+                  if (one := test.score(metric)) and (other := row.score(metric))]
+        if scores and all(one == other for one, other in scores):
+            return [f"{where}: it scores exactly as uniform sampling with as many samples does, so that its picture is most likely the same: it is faster than "
+                    "the reference rate because it has fewer samples, and not because of where they lie."]
     return []
 
 

@@ -103,7 +103,8 @@ def histogram(name, title, label, values, median, color):
     with drawing.figure(4.6, 3.4) as (fig, axes):
         axes.set(xlabel=label, ylabel="share [%]", title=title)
         if len(values):
-            most = numpy.quantile(values, 0.98) * 1.1 or 1
+            most = numpy.quantile(values, 0.98, method="lower")
+            most = 1.1 * (values.max() if len(values) < 20 or values.max() < 1.5 * most else most) or 1  # a single far one leaves no axis empty
             bins = numpy.linspace(0, most, 19)
             axes.hist(values, bins, weights=numpy.full(len(values), 100 / len(values)), color=color, alpha=0.8, rwidth=0.93)
             axes.axvline(median, color=drawing.INK, lw=1.1, ls=(0, (3, 3)))

@@ -2,6 +2,7 @@
 """What a sweep has measured, as its results.json tells it."""
 
 import json
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -149,8 +150,15 @@ class Metric:
         return "lower is better" if self.lower else "higher is better"
 
 
+MOST = 1e300  # beyond it, sums of numbers are no numbers
+
+
 def _finite(text):
-    return float(text) if abs(float(text)) < float("inf") else None
+    return float(text) if abs(float(text)) < MOST else None
+
+
+def _whole(text):
+    return int(text) if len(text) < 300 else None
 
 
 class Results:
@@ -173,7 +181,7 @@ class Results:
 
     def _read(self):
         try:
-            raw = json.loads(self.file.read_bytes(), parse_constant=lambda name: None, parse_float=_finite)  # NaN and Infinity are no JSON, and nothing to draw
+            raw = json.loads(self.file.read_bytes(), parse_constant=lambda name: None, parse_float=_finite, parse_int=_whole)  # NaN and Infinity are no JSON, and nothing to draw
         except FileNotFoundError:
             raise Error(f"{self.file}: there is no such file; name results.json of a sweep, or its folder", "input") from None
         except OSError as problem:
@@ -184,6 +192,16 @@ class Results:
         if form != FORMAT:
             raise Error(f"{self.file}: " + (f"is of the format '{form}', and this version reads {FORMAT} only" if form else f"is no {FORMAT} file: it has no 'format'"))
         check(raw, SCHEMA, f"{self.file}: ")
+        try:
+            json.dumps(raw, ensure_ascii=False).encode()
+        except UnicodeEncodeError:
+            raise Error(f"{self.file}: holds half of a pair of UTF-16, which is no letter; write it again with gazetrace sweep", "input") from None
+        for kind, key in (("rows", "id"), ("metrics", "name")):
+            names = set()
+            for i, one in enumerate(raw[kind]):
+                if one[key] in names:
+                    raise Error(f"{self.file}: {kind}[{i}].{key} is that of another: '{one[key]}'", "input")
+                names.add(one[key])
         return raw
 
     def to_pandas(self):
@@ -223,6 +241,8 @@ class Results:
             common = 0
             while len(labels) > 1 and all(len(label) > common + 1 for label in labels) and len({label[common] for label in labels}) == 1:
                 common += 1
+            if common and any(len(label) == common + 1 and re.fullmatch(r"[\d.]+", label[common]) for label in labels):
+                common -= 1  # a number alone says nothing: "spp 1"
             for row in self.rows:
                 if row.place == place:
                     test = row if row.role == "test" else None if row.role.startswith("uniform-") else self.by_id.get(row.of)

@@ -9,7 +9,7 @@ import pandas
 from . import findings, words
 from .results import ROLES, Estimate
 
-NUMBER = re.compile(r"([-<>~ ]*[\d.e+-]+( [kMG])?|–|not known|)$")  # a cell of figures
+NUMBER = re.compile(r"([-<>~ ]*[\d.e+-]+( to [\d.e+-]+)?( ([kMGs%]|ms|deg|Hz))?|–|not known|)$")  # a cell of figures
 FOLDED = 10  # rows of a long table that stand open
 
 
@@ -25,10 +25,14 @@ def cell(value):
     return html.escape(str(value))
 
 
+def _is_text(value):
+    return isinstance(value, tuple) or (isinstance(value, str) and not NUMBER.match(value))
+
+
 def table(frame, caption, classes=()):
     """The frame's first column heads its rows; names of columns may be a text and a small one. Texts stand to the left,
     numbers to the right."""
-    sides = ["text" if len(frame) and isinstance(frame.iloc[0, i], str) and not NUMBER.match(frame.iloc[0, i]) else "value" for i in range(frame.shape[1])]
+    sides = ["text" if len(frame) and _is_text(frame.iloc[0, i]) else "value" for i in range(frame.shape[1])]
     parts = [f'<p class="caption">{html.escape(caption)}</p><div class="scroll" tabindex="0" role="region" aria-label="{html.escape(caption, True)}"><table>',
              "<thead><tr>", *(f'<th scope="col" class="{side}">{cell(name)}</th>' for name, side in zip(frame.columns, sides)), "</tr></thead><tbody>"]
     for i, row in enumerate(frame.itertuples(index=False, name=None)):
