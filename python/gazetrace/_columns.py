@@ -37,7 +37,7 @@ def as_array(values):
 def unknown(what, name, known):
     """Words for a name that is not there."""
     near = difflib.get_close_matches(str(name), known, 1)
-    return f"unknown {what} {name!r}" + (f"; did you mean {near[0]!r}?" if near else "") + f" Known: {', '.join(known)}"
+    return f"unknown {what} {name!r}; " + (f"did you mean {near[0]!r}? " if near else "") + f"Known: {', '.join(known)}"
 
 
 def column_of(columns, name):

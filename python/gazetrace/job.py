@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Jobs: what one run is asked to do."""
 
+import contextlib
 import json
 import os
 import tempfile
@@ -80,6 +81,19 @@ class Job:
         self._folders.append(_TemporaryFolder())
         return self._folders[-1].path
 
+    @contextlib.contextmanager
+    def _in_its_words(self):
+        """Messages name an array, and not the temporary file that it is written to."""
+        try:
+            yield
+        except Error as problem:
+            text = str(problem)
+            for path in self._written:
+                text = text.replace(path, f"`{'gaze' if Path(path).name == 'gaze.csv' else 'density'}`")
+            if text == str(problem):
+                raise
+            raise Error(text, problem.kind) from None
+
     def _gaze_text(self, gaze):
         if isinstance(gaze, (str, os.PathLike)):
             return os.fspath(gaze)
@@ -120,14 +134,16 @@ class Job:
 
     def plan(self):
         """What would be rendered, decided before the first ray: a `Plan`. Needs the scene only where the camera is in it."""
-        planned = _core.Planned(self._core)
+        with self._in_its_words():
+            planned = _core.Planned(self._core)
         warn(planned.warnings())
         return Plan(planned)
 
     def outlines(self):
         """Where each object of the scene is seen in each frame, exact to the pixel: what `gazetrace gaze aois --outlines`
         writes, as a dictionary. docs/gaze.md says what is in it."""
-        text, warnings = _core.outlines(self._core)
+        with self._in_its_words():
+            text, warnings = _core.outlines(self._core)
         warn(warnings)
         return json.loads(text)
 
@@ -142,7 +158,8 @@ class Job:
         of the program are written as well, with its checks, and NAME.timing.csv and NAME.run.json beside them; without,
         nothing is written.
         """
-        rendering = Rendering(_core.Rendering(self._core, scene), keep=self._folders)
+        with self._in_its_words():
+            rendering = Rendering(_core.Rendering(self._core, scene), keep=self._folders)
         warn(rendering.warnings)
         return rendering
 

@@ -111,6 +111,11 @@ class Frame:
         return self._core.t_video_ns
 
     @property
+    def t_s(self):
+        """The same in seconds."""
+        return self.t_ns * 1e-9
+
+    @property
     def gaze(self):
         """The gaze that steered the samples."""
         return _gaze(self.request["gaze_render"])

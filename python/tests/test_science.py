@@ -106,6 +106,10 @@ class GazeOfAJobTest(TestCase):
         for gaze in (np.c_[t, u, v], {"t_s": t, "u": u, "v": v}, {"t_ns": (t * 1e9).astype(int), "u": u, "v": v}):
             np.testing.assert_allclose(self.gaze_of_frames(gaze), expected, atol=2e-3)
         self.assertSays("three columns", "usage", gazetrace.Job, gaze=np.zeros((4, 2)))
+        nowhere = gazetrace.Job(**{**SMALL, "screen": None}, gaze=np.array([[0, 0.5, 0.5], [1, 0.5, 0.5]]))
+        for method in (nowhere.plan, nowhere.outlines, nowhere.render):  # no message names the temporary file
+            with self.assertRaisesRegex(gazetrace.Error, "^`gaze`: gaze on a screen needs"):
+                method()
         self.assertSays("columns t_s", "usage", gazetrace.Job, gaze={"u": u, "v": v})
         job = gazetrace.Job(gaze=np.c_[t, u, v], frames=1, **SMALL).replace(frames=range(1, 3))
         self.assertEqual(len(job.plan()), 2)
@@ -199,6 +203,7 @@ class PiecesTest(TestCase):
             np.testing.assert_array_equal(np.array(written.channel(name)).reshape(18, 32), frame.radiance[..., c])
         self.assertSays(".png, .exr or .npy", "usage", frame.save, "f.gif")
         self.assertEqual(frame.eccentricity.shape, (18, 32))
+        self.assertAlmostEqual(frame.t_s, frame.request["t_video_ns"] / 1e9, 12)
         self.assertLess(frame.eccentricity[9, 16], frame.eccentricity[0, 0])
 
 
