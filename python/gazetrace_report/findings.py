@@ -50,6 +50,12 @@ def tally(compared):
     return counts.reindex(columns=VERDICTS, fill_value=0)
 
 
+def beside(row):
+    """What a run is, and of one of equal time how near it came."""
+    reached = row.estimate("reached")
+    return ROLES[row.role].words + (f": {words.with_interval(reached)} of its time" if reached else "")
+
+
 def losses(compared):
     """Where a uniform run of the same cost is better."""
     lost = compared[compared.verdict == "worse"]
@@ -58,7 +64,7 @@ def losses(compared):
         "in": [words.part(part) for part in lost.part],
         "foveated": lost.ours,
         "uniform": lost.theirs,
-        "uniform run": [(ROLES[row.role].words, f"{words.with_interval(reached)} of its time" if (reached := row.estimate("reached")) else "") for row in lost.baseline],
+        "uniform run": [beside(row) for row in lost.baseline],
         "foveated run": [test.name for test in lost.test],
         "scene and gaze": [words.place(*test.place) for test in lost.test],
     })

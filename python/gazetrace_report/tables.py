@@ -25,14 +25,10 @@ def cell(value):
     return html.escape(str(value))
 
 
-def _is_text(value):
-    return isinstance(value, tuple) or (isinstance(value, str) and not NUMBER.match(value))
-
-
 def table(frame, caption, classes=()):
     """The frame's first column heads its rows; names of columns may be a text and a small one. Texts stand to the left,
     numbers to the right."""
-    sides = ["text" if len(frame) and _is_text(frame.iloc[0, i]) else "value" for i in range(frame.shape[1])]
+    sides = ["text" if len(frame) and isinstance(frame.iloc[0, i], str) and not NUMBER.match(frame.iloc[0, i]) else "value" for i in range(frame.shape[1])]
     parts = [f'<p class="caption">{html.escape(caption)}</p><div class="scroll" tabindex="0" role="region" aria-label="{html.escape(caption, True)}"><table>',
              "<thead><tr>", *(f'<th scope="col" class="{side}">{cell(name)}</th>' for name, side in zip(frame.columns, sides)), "</tr></thead><tbody>"]
     for i, row in enumerate(frame.itertuples(index=False, name=None)):
@@ -57,7 +53,7 @@ def _head(metric):
 def runs(results, place):
     """Time, speed and scores of every run; what they cost stands in a table of its own."""
     rows = [row for row in results.rows_in_order(place) if row.role != "wrong-gaze"]  # those stand among the controls
-    said = [(row.name, _role(row)) for row in rows]
+    said = [(row.name, findings.beside(row)) for row in rows]
     frame = {"run": said, ("time", "s a frame"): [row.estimate("time_s") for row in rows], "speed-up": [row.estimate("speed_up") for row in rows]}
     for metric in results.metrics:
         frame[_head(metric)] = [row.score(metric.name) for row in rows]
@@ -75,11 +71,6 @@ def runs(results, place):
 def _floor(results, reference, gaze, metric):
     value = results.floor(reference, gaze, metric)
     return "–" if value is None else Estimate(value)
-
-
-def _role(row):
-    reached = row.estimate("reached")
-    return ROLES[row.role].words + (f": {words.with_interval(reached)} of its time" if reached else "")
 
 
 def costs(results, place):
