@@ -367,6 +367,11 @@ OpenPicture open_picture(const PictureInput& input, const std::string& place, co
 OpenPicture open_to_read(const PictureInput& input, const std::string& place, const PictureLimits& limits,
                          const Opening& opening = {}) {
   OpenPicture picture = open_picture(input, place, opening);
+  if (picture.reader->facts.is_film_scan) {
+    throw Error(ErrorKind::input, place_of(input, place),
+                "it holds densities of a film, and no code values of a display",
+                "convert it, for example by 'oiiotool IN.dpx --colorconvert KodakLog sRGB -o OUT.exr'");
+  }
   const std::string where = place_of(input, place);
   check_size(picture, where, limits);
   if (is_png(picture.bytes)) {

@@ -35,6 +35,7 @@ struct PictureFacts {
   bool is_linear = false;           // light; otherwise code values of a display
   bool is_half = false;             // half floats, which end at 65504
   bool is_cube_map = false;         // six faces, in whatever order
+  bool is_film_scan = false;        // densities of a film, which are neither light nor code values of a display
   Alpha alpha = Alpha::none;
   int orientation = 1;                 // Exif's: 1 is upright, 2 to 8 are what turns the stored raster upright
   std::optional<Primaries> primaries;  // empty: not stated

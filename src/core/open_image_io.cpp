@@ -109,6 +109,8 @@ class OpenImageIoReader final : public PictureReader {
     facts.is_linear = spec.format.is_floating_point();
     facts.is_half = spec.format == OIIO::TypeDesc::HALF;
     facts.is_cube_map = spec.get_string_attribute("textureformat").find("CubeFace") != std::string::npos;
+    const std::string transfer = spec.get_string_attribute("dpx:Transfer");
+    facts.is_film_scan = transfer == "Printing density" || transfer == "Logarithmic";
     facts.orientation = spec.get_int_attribute("Orientation", 1);
     // TIFF's alone can be either; of the others it is straight, whatever their readers say.
     const bool is_straight = format != "tiff" || spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0;

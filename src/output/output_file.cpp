@@ -24,7 +24,10 @@ struct Place {
 Place place_of(const std::string& path) {
   struct stat state {};
   if (::stat(path.c_str(), &state) != 0) {
-    return {fs::absolute(path).lexically_normal().string(), false};
+    // Links in the folder's name count, and a link that leads nowhere is there.
+    std::error_code problem;
+    const fs::path real = fs::weakly_canonical(fs::absolute(path), problem);
+    return {(problem ? fs::absolute(path).lexically_normal() : real).string(), ::lstat(path.c_str(), &state) == 0};
   }
   return {fmt::format("{}:{}", state.st_dev, state.st_ino), true};
 }

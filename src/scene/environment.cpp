@@ -150,7 +150,9 @@ Environment load_environment(const std::string& path, double rotation_deg, doubl
           "pixel " + std::to_string(i % width) + ", " + std::to_string(i / width) + " overflows at this exposure",
           "lower the environment's exposure");
     }
-    negative += pixel.x < 0 || pixel.y < 0 || pixel.z < 0 ? 1 : 0;
+    // Primaries that were converted leave values that are below 0 by rounding alone.
+    const float rounding = -1e-6F * std::max({pixel.x, pixel.y, pixel.z, 0.0F});
+    negative += std::min({pixel.x, pixel.y, pixel.z}) < rounding ? 1 : 0;
     pixel = Vec3f{std::max(pixel.x, 0.0F), std::max(pixel.y, 0.0F), std::max(pixel.z, 0.0F)} * scale;
   }
   if (negative > 0) {

@@ -299,5 +299,29 @@ class BadOptions(harness.CliTest):
         self.assert_refused(["plan"], ["scene"])
 
 
+
+class Outputs(harness.CliTest):
+    def test_links_do_not_hide_what_an_output_replaces(self):
+        self.write("box.gltf", json.dumps(harness.box_gltf()))
+        job = ["render", "box.gltf", "--size", "16x9", "--spp", "1", "--quiet"]
+        (self.folder / "q").mkdir()
+        (self.folder / "linked").symlink_to("q")
+        self.assert_refused([*job, "-o", "q/a.png", "--json=linked/a.png"], ["linked/a.png", "another name"])
+        self.assertEqual(list((self.folder / "q").iterdir()), [])
+        (self.folder / "nowhere.png").symlink_to("gone/x.png")
+        self.assert_refused([*job, "-o", "nowhere.png"], ["nowhere.png", "--overwrite"])
+        self.assertTrue((self.folder / "nowhere.png").is_symlink())
+
+    def test_densities_of_a_film_are_no_picture_of_a_display(self):
+        self.write("box.gltf", json.dumps(harness.box_gltf()))
+        self.run_ok("render", "box.gltf", "--size", "16x9", "--spp", "1", "--quiet", "-o", "a.png", "-o", "a.exr")
+        self.run_ok("render", "box.gltf", "--size", "16x9", "--spp", "1", "--quiet", "-o", "d.dpx", "-o", "d.exr")
+        dpx = bytearray((self.folder / "d.dpx").read_bytes())
+        dpx[801] = 1  # the transfer of the first image element: printing density (SMPTE 268M, table 5A)
+        (self.folder / "film.dpx").write_bytes(dpx)
+        self.run_ok("compare", "a.png", "d.dpx", "--metrics", "mse")
+        self.assert_refused(["compare", "a.png", "film.dpx", "--metrics", "mse"], ["film.dpx", "densities", "oiiotool"])
+
+
 if __name__ == "__main__":
     harness.main()

@@ -210,9 +210,11 @@ int run_plan(const PlanArguments& arguments) {
   }
   if (!sample_maps.empty() && !arguments.counts && !arguments.model_gain && arguments.chunks == 0) {
     const std::string last = sample_maps.size() > 1 ? " to " + sample_maps.back() : "";
-    arguments.json.print(fmt::format("{}{}: {} sample maps\n", sample_maps.front(), last, sample_maps.size()), [&] {
-      return nlohmann::ordered_json{{"sample_maps", sample_maps}}.dump(2) + "\n";
-    });
+    arguments.json.print(fmt::format("{}{}: {} sample map{}\n", sample_maps.front(), last, sample_maps.size(),
+                                     sample_maps.size() == 1 ? "" : "s"),
+                         [&] {
+                           return nlohmann::ordered_json{{"sample_maps", sample_maps}}.dump(2) + "\n";
+                         });
     return exit_done;
   }
   if (arguments.model_gain) {
