@@ -168,8 +168,8 @@ std::vector<std::string> density_picture_files(const FoveationSettings& settings
 SamplingMap planned_sampling_map(const FoveationSettings& settings, const FrameRequest& request, std::uint64_t seed,
                                  int threads = 0);
 
-// Its rates in proportion to the place where the eye looks, which has 1: of densities at each pixel's centre, of
-// regions by what a pixel of the region expects. 1 everywhere without gaze.
+// Relative density of the samples of such a frame, 1 where the eye looks: a density model at each pixel's centre; of
+// regions, the expected samples of a pixel. 1 everywhere without gaze.
 ImageGray planned_density(const FoveationSettings& settings, const FrameRequest& request, std::uint64_t seed,
                           int threads = 0);
 

@@ -84,8 +84,9 @@ void draw_fixation_mark(DisplayImage& image, const Vec2d& gaze_px, double pixels
 // that are no letter of English, digit or one of .:-/%+()= stay empty.
 void draw_label(DisplayImage& image, const Vec2d& top_left_px, std::string_view text, int dot_px);
 
-// Appends below a picture what `clean`, the same one without marks, shows about the gaze and far from it, each half as
-// wide as the picture and three times as large, and frames both places in the picture. Without a gaze there is nothing.
+// Appends two insets below a picture, of the place of the gaze and of one far from it, cut from `clean` (the picture
+// without marks): each is half as wide as the picture and three times as large. Frames both places in the picture.
+// Without a gaze the insets stay empty.
 DisplayImage with_insets(const DisplayImage& picture, const DisplayImage& clean, const std::optional<Vec2d>& gaze_px);
 
 }  // namespace gazetrace
