@@ -327,12 +327,13 @@ class FieldCases(harness.CliTest):
         self.assertNotRegex(told, r"(?m) v\.mp4$")
 
     def test_files_that_are_made_to_harm(self):
-        made = subprocess.run([sys.executable, FIELD / "make.py", self.folder / "made"], capture_output=True, text=True, check=False)
+        # make.py writes the two plan files before it asks for Pillow, which draws a picture that no case here reads.
+        subprocess.run([sys.executable, FIELD / "make.py", self.folder / "made"], capture_output=True, check=False)
         for name in ("table_deep.toml", "key_deep.toml"):
             self.assert_refused(["render", "--config", f"made/{name}"], [name, "too deep"])
-        if made.returncode != 0:
-            self.skipTest("Pillow, which draws the pictures, is not here (pip install pillow): " + made.stderr[-200:])
-        for path in (self.folder / "made/claims_30000x15000.hdr", FIELD / "env_only_Z.exr"):
+        claims = self.folder / "claims_30000x15000.hdr"
+        claims.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 15000 +X 30000\n" + bytes(27_000_000))
+        for path in (claims, FIELD / "env_only_Z.exr"):
             self.assert_refused(["render", "box.gltf", *STILL, "--env", str(path), "--max-memory", "1G", "-o", "a.png"], [path.name])
 
 
