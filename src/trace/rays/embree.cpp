@@ -65,6 +65,8 @@ void RayScene::Impl::check(const char* what) const {
 
 RTCScene RayScene::Impl::new_scene() const {
   RTCScene scene = rtcNewScene(device);
+  // Without this flag, rays slip between triangles that share an edge.
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
   return scene;
 }
@@ -139,12 +141,12 @@ std::uint32_t RayScene::add_deforming_mesh(const std::vector<RayGeometry>& geome
   impl_->meshes.push_back(scene);
   impl_->steps.push_back(1);
   const bool refit = update == MeshUpdate::refit;
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_DYNAMIC);  // one BVH for each geometry, and one above them
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);  // a BVH for each geometry, one above them
   rtcSetSceneBuildQuality(scene, update == MeshUpdate::rebuild_high  ? RTC_BUILD_QUALITY_HIGH
                                  : update == MeshUpdate::rebuild_low ? RTC_BUILD_QUALITY_LOW
                                                                      : RTC_BUILD_QUALITY_MEDIUM);
   if (!refit) {
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_NONE);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   }
   for (std::size_t i = 0; i < geometries.size(); ++i) {
     impl_->attach(scene, geometries[i], static_cast<std::uint32_t>(i),
