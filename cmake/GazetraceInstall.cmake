@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs program, library, headers and a package that find_package(gazetrace) reads; with the program its manual pages,
-# its completion in shells and the example that `gazetrace demo` shows. `cpack` makes a Debian package of all this.
+# its completion in shells, reports, imports, the add-on for Blender and the example that `gazetrace demo` shows. `cpack` makes a
+# Debian package of all this, the manual and the Python package.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/gazetrace)
 
@@ -8,15 +9,18 @@ install(TARGETS gazetrace EXPORT gazetraceTargets)
 if(TARGET gazetrace_cli)
   install(TARGETS gazetrace_cli)
   set(shell_dir ${PROJECT_BINARY_DIR}/shell)
+  file(MAKE_DIRECTORY ${shell_dir})
   add_custom_command(OUTPUT ${shell_dir}/made
     COMMAND gazetrace_cli man --folder ${shell_dir}/man1
     COMMAND gazetrace_cli completion bash > ${shell_dir}/gazetrace
     COMMAND gazetrace_cli completion zsh > ${shell_dir}/_gazetrace
     COMMAND gazetrace_cli completion fish > ${shell_dir}/gazetrace.fish
+    COMMAND sh -c "mkdir -p gz && for page in man1/*.1; do gzip -9nc $page > gz/\${page#man1/}.gz || exit 1; done"
     COMMAND ${CMAKE_COMMAND} -E touch ${shell_dir}/made
+    WORKING_DIRECTORY ${shell_dir}
     DEPENDS gazetrace_cli VERBATIM COMMENT "Writing manual pages and completion")
   add_custom_target(gazetrace_shell ALL DEPENDS ${shell_dir}/made)
-  install(DIRECTORY ${shell_dir}/man1/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(DIRECTORY ${shell_dir}/gz/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
   install(FILES ${shell_dir}/gazetrace DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${shell_dir}/_gazetrace DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
   install(FILES ${shell_dir}/gazetrace.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
@@ -28,9 +32,20 @@ if(TARGET gazetrace_cli)
   install(FILES examples/example.toml examples/demo.toml DESTINATION ${data_dir}/examples)
   install(DIRECTORY scenes/courtyard DESTINATION ${data_dir}/scenes)
   install(FILES scenes/README.md DESTINATION ${data_dir}/scenes)
-  install(DIRECTORY gazelogs DESTINATION ${data_dir} FILES_MATCHING PATTERN "*.csv" PATTERN "*.md" PATTERN "LICENSE*")
+  install(DIRECTORY gazelogs DESTINATION ${data_dir} FILES_MATCHING PATTERN "*.csv" PATTERN "*.md" PATTERN "LICENSE*"
+    PATTERN "*.json" PATTERN "*.tsv.gz")
 endif()
-install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# In the same places as in the sources, so that the pages' links lead somewhere.
+install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES src/CMakeLists.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}/src)
+install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN __pycache__ EXCLUDE)
+foreach(folder blender gazelogs include scenes src tests)
+  file(GLOB_RECURSE pages CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${folder}/*.md)
+  foreach(page IN LISTS pages)
+    cmake_path(GET page PARENT_PATH place)
+    install(FILES ${page} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${place})
+  endforeach()
+endforeach()
 install(DIRECTORY include/gazetrace DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 install(FILES ${PROJECT_BINARY_DIR}/include/gazetrace/version.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gazetrace)
 install(EXPORT gazetraceTargets NAMESPACE gazetrace:: DESTINATION ${package_dir})
@@ -42,20 +57,5 @@ install(FILES ${PROJECT_BINARY_DIR}/gazetraceConfig.cmake ${PROJECT_BINARY_DIR}/
   cmake/FindOpenColorIO.cmake cmake/GazetraceFindDependencies.cmake DESTINATION ${package_dir})
 
 if(PROJECT_IS_TOP_LEVEL)
-  # What the program needs is found in its libraries; whoever builds against the library needs theirs as well.
-  file(STRINGS cmake/debian-packages.txt packages REGEX "-dev$")
-  list(FILTER packages EXCLUDE REGEX "gtest|gmock|benchmark|cli11")
-  list(JOIN packages ", " packages)
-  set(CPACK_GENERATOR DEB)
-  set(CPACK_PACKAGE_CONTACT "The gazetrace developers")
-  set(CPACK_PACKAGE_VENDOR gazetrace)
-  set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
-  set(CPACK_STRIP_FILES ON)
-  set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-  set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
-  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-  set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3 (>= 3.11)")  # gazetrace-report and gazetrace-gaze-report
-  set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "ffmpeg, python3-jinja2, python3-matplotlib, python3-pandas")
-  set(CPACK_DEBIAN_PACKAGE_SUGGESTS "${packages}")
-  include(CPack)
+  include(GazetraceDebian)
 endif()

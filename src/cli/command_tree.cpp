@@ -41,7 +41,9 @@ CommandWords words_of(const CLI::App& app, const std::vector<std::string>& above
     words.options.push_back(words_of(*program.get_option("--config")));
   }
   for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
-    words.commands.push_back(words_of(*sub, words.path, program));
+    if (!sub->get_group().empty()) {
+      words.commands.push_back(words_of(*sub, words.path, program));
+    }
   }
   return words;
 }

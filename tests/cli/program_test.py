@@ -121,6 +121,8 @@ class Talk(harness.CliTest):
         pages = self.files("man")
         for name in ("gazetrace.1", "gazetrace-render.1", "gazetrace-gaze-inspect.1", "gazetrace-farm-status.1"):
             self.assertIn(name, pages)
+        for name in pages:  # what was a command once has no page, and all others say what they are for
+            self.assertRegex((self.folder / "man" / name).read_text(), r"\n\.SH NAME\n\S+ \\- \S")
         page = self.run_ok("man", "render").stdout
         self.assertEqual(page, (self.folder / "man/gazetrace-render.1").read_text())
         for option in json.loads(self.run_ok("list", "options", "--json").stdout):
