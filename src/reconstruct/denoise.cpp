@@ -18,7 +18,7 @@ constexpr int kFineAround = 6;
 constexpr int kCoarseAround = 2 * kCoarsePx;
 // Errors count relative to the light, which counts as at least this share of the picture's mean.
 constexpr double kLeastLight = 0.01;
-// Both halves go through the network where a pixel of so many has kSamplesOfBlend: a small fovea of many samples has a
+// A half goes through the network where a pixel of so many has kSamplesOfBlend: a small fovea of many samples has a
 // wide margin of few.
 constexpr std::size_t kLeastPart = 32;
 // Nothing is given back to pixels with half of kSamplesOfBlend, everything from kSamplesOfBlend on.
@@ -77,9 +77,9 @@ ImageRgb difference(const ImageRgb& a, const ImageRgb& b, int threads) {
   return picture_of(a, threads, [&](std::size_t i) { return a.pixels[i] - b.pixels[i]; });
 }
 
-// What samples have beyond the network's picture: of both halves, by the other half beyond the same, and of the frame.
+// What samples have beyond the network's picture: the half that it was shown, the other half, and the frame.
 struct Residuals {
-  ImageRgb own[2], other[2], all;
+  ImageRgb shown, other, all;
 };
 
 // The part of `residuals` that is coarser; they keep the finer part.
@@ -89,23 +89,19 @@ Residuals take_coarse(Residuals& residuals, int threads) {
     picture = difference(picture, coarse, threads);
     return coarse;
   };
-  return {{split(residuals.own[0]), split(residuals.own[1])},
-          {split(residuals.other[0]), split(residuals.other[1])},
-          split(residuals.all)};
+  return {split(residuals.shown), split(residuals.other), split(residuals.all)};
 }
 
-// Adds to `picture` what of the residuals both halves have: the regression of the other's on one's own around a pixel.
+// Adds to `picture` the share of the residuals that both halves have around a pixel: their product over the mean of
+// their squares. A single bright pixel of either half so lessens it.
 void give_back(const Residuals& residuals, int around, const ImageRgb& scale, const ImageGray& samples, int threads,
                ImageRgb& picture) {
   const ImageRgb moments = blurred(picture_of(picture, threads,
                                               [&](std::size_t i) {
-                                                Vec3f sum;
-                                                for (int half = 0; half < 2; ++half) {
-                                                  const Vec3f own = scale.pixels[i] * residuals.own[half].pixels[i];
-                                                  const Vec3f other = scale.pixels[i] * residuals.other[half].pixels[i];
-                                                  sum += Vec3f{dot(own, other), dot(own, own), 0};
-                                                }
-                                                return sum;
+                                                const Vec3f shown = scale.pixels[i] * residuals.shown.pixels[i];
+                                                const Vec3f other = scale.pixels[i] * residuals.other.pixels[i];
+                                                const float squares = dot(shown, shown) + dot(other, other);
+                                                return Vec3f{dot(shown, other), 0.5F * squares, 0};
                                               }),
                                    around, threads);
   picture = picture_of(picture, threads, [&](std::size_t i) {
@@ -116,20 +112,15 @@ void give_back(const Residuals& residuals, int around, const ImageRgb& scale, co
 }
 
 ImageRgb blend(const DenoiserInput& input, const ImageRgb& denoised, int threads) {
-  ImageRgb by_half[2];
-  ImageRgb network[2];
-  for (std::size_t half = 0; half < 2; ++half) {
-    DenoiserInput shown{.radiance = input.halves[half],
-                        .albedo = input.albedo,
-                        .normal = input.normal,
-                        .samples = {},
-                        .halves = {},
-                        .clean = input.clean};
-    network[half] = open_image_denoise(shown, threads);
-    by_half[half] = without_outliers(input.halves[half]);
-  }
-  Residuals residuals{{difference(by_half[0], network[0], threads), difference(by_half[1], network[1], threads)},
-                      {difference(by_half[1], network[0], threads), difference(by_half[0], network[1], threads)},
+  const DenoiserInput half{.radiance = input.halves[0],
+                           .albedo = input.albedo,
+                           .normal = input.normal,
+                           .samples = {},
+                           .halves = {},
+                           .clean = input.clean};
+  const ImageRgb network = open_image_denoise(half, threads, DenoiserQuality::balanced);
+  Residuals residuals{difference(without_outliers(input.halves[0]), network, threads),
+                      difference(without_outliers(input.halves[1]), network, threads),
                       difference(without_outliers(input.radiance), denoised, threads)};
   const Vec3d sum = std::accumulate(denoised.pixels.begin(), denoised.pixels.end(), Vec3d{},
                                     [](const Vec3d& all, const Vec3f& one) { return all + to_double(one); });
@@ -152,7 +143,7 @@ ImageRgb blend(const DenoiserInput& input, const ImageRgb& denoised, int threads
 }  // namespace
 
 ImageRgb denoise(const DenoiserInput& input, int threads) {
-  ImageRgb denoised = open_image_denoise(input, threads);
+  ImageRgb denoised = open_image_denoise(input, threads, DenoiserQuality::high);
   const std::vector<float>& samples = input.samples.pixels;
   const auto many = std::count_if(samples.begin(), samples.end(), [](float one) { return one >= kSamplesOfBlend; });
   const bool blends = !input.halves[0].empty() && kLeastPart * static_cast<std::size_t>(many) >= samples.size();

@@ -31,7 +31,11 @@ using Device = struct OIDNDeviceImpl*;
 using Filter = struct OIDNFilterImpl*;
 constexpr int kCpuDevice = 1;    // OIDN_DEVICE_TYPE_CPU, the only one that takes memory that we have allocated
 constexpr int kThreeFloats = 3;  // OIDN_FORMAT_FLOAT3
-constexpr int kHighQuality = 6;  // OIDN_QUALITY_HIGH
+
+// OIDN_QUALITY_BALANCED and OIDN_QUALITY_HIGH
+int number_of(DenoiserQuality quality) {
+  return quality == DenoiserQuality::high ? 6 : 5;
+}
 
 struct Library {
   Device (*new_device)(int type) = nullptr;
@@ -172,7 +176,7 @@ const Found& library() {
 // One device serves all frames of a process, one at a time, until it is asked for another number of threads.
 class SharedDevice {
  public:
-  ImageRgb denoise(const ImageRgb& radiance, const DenoiserInput& input, int threads) {
+  ImageRgb denoise(const ImageRgb& radiance, const DenoiserInput& input, int threads, DenoiserQuality quality) {
     const std::lock_guard<std::mutex> alone(mutex_);
     const Library& call = library().library;
     if (call.new_device == nullptr) {
@@ -200,7 +204,7 @@ class SharedDevice {
     image("output", result);
     call.set_filter_bool(filter, "hdr", true);
     call.set_filter_bool(filter, "cleanAux", input.clean);
-    call.set_filter_int(filter, "quality", kHighQuality);
+    call.set_filter_int(filter, "quality", number_of(quality));
     call.commit_filter(filter);
     call.execute_filter(filter);
     const std::string problem = problem_of(call, device_);
@@ -232,9 +236,9 @@ const DenoiserLibrary& denoiser_library() {
 
 std::string denoiser_description() {
   const DenoiserLibrary& found = denoiser_library();
-  return found.path.empty()
-             ? ""
-             : "Open Image Denoise " + found.version + ", quality high, built-in weights, " + found.instruction_set;
+  return found.path.empty() ? ""
+                            : "Open Image Denoise " + found.version +
+                                  ", quality high (of halves balanced), built-in weights, " + found.instruction_set;
 }
 
 ImageRgb without_outliers(const ImageRgb& radiance) {
@@ -274,9 +278,9 @@ ImageRgb without_outliers(const ImageRgb& radiance) {
   return shown;
 }
 
-ImageRgb open_image_denoise(const DenoiserInput& input, int threads) {
+ImageRgb open_image_denoise(const DenoiserInput& input, int threads, DenoiserQuality quality) {
   static SharedDevice device;
-  return device.denoise(without_outliers(input.radiance), input, resolve_threads(threads));
+  return device.denoise(without_outliers(input.radiance), input, resolve_threads(threads), quality);
 }
 
 }  // namespace gazetrace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Intel Open Image Denoise, shown what it was trained on: radiance, albedo and normal of every pixel
 // (denoiser_input.hpp), at the resolution of its samples (denoiser_levels.hpp). The network runs once for each size of
-// blocks, or three times (denoise.hpp).
+// blocks, or twice (denoise.hpp).
 #include <utility>
 #include <vector>
 

@@ -72,13 +72,13 @@ class Denoise : public testing::Test {
 TEST_F(Denoise, IsNoWorseThanSamplesThatKnowBetter) {
   const Picture picture = planted({.texture = 0.1F, .noise = 0.01F});
   const double raw = error_of(picture.input.radiance, picture.truth);
-  ASSERT_GT(error_of(open_image_denoise(picture.input, 2), picture.truth), 3 * raw);
+  ASSERT_GT(error_of(open_image_denoise(picture.input, 2, DenoiserQuality::high), picture.truth), 3 * raw);
   EXPECT_LT(error_of(denoise(picture.input, 2), picture.truth), 1.1 * raw);
 }
 
 TEST_F(Denoise, IsTheNetworksWhereThereIsNothingButNoise) {
   const Picture picture = planted({.texture = 0, .noise = 0.1F});
-  const double network = error_of(open_image_denoise(picture.input, 2), picture.truth);
+  const double network = error_of(open_image_denoise(picture.input, 2, DenoiserQuality::high), picture.truth);
   ASSERT_LT(network, 0.2 * error_of(picture.input.radiance, picture.truth));
   EXPECT_LT(error_of(denoise(picture.input, 2), picture.truth), 2 * network);
 }
@@ -86,7 +86,7 @@ TEST_F(Denoise, IsTheNetworksWhereThereIsNothingButNoise) {
 // Few samples say little about their own error: the network runs once.
 TEST_F(Denoise, IsTheNetworksWithFewSamples) {
   const Picture picture = planted({.texture = 0.1F, .noise = 0.01F, .samples = 15});
-  EXPECT_EQ(denoise(picture.input, 2), open_image_denoise(picture.input, 2));
+  EXPECT_EQ(denoise(picture.input, 2), open_image_denoise(picture.input, 2, DenoiserQuality::high));
 }
 
 // A fovea of many samples, in a margin that has few and keeps the network's picture.
@@ -96,7 +96,7 @@ TEST_F(Denoise, GivesBackToTheFewPixelsThatHaveManySamples) {
   for (std::size_t i = samples.pixels.size() / 8; i < samples.pixels.size(); ++i) {
     samples.pixels[i] = 1;
   }
-  const ImageRgb network = open_image_denoise(picture.input, 2);
+  const ImageRgb network = open_image_denoise(picture.input, 2, DenoiserQuality::high);
   const ImageRgb denoised = denoise(picture.input, 2);
   EXPECT_NE(denoised.pixels.front(), network.pixels.front());
   EXPECT_EQ(denoised.pixels.back(), network.pixels.back());
