@@ -17,7 +17,7 @@
 #include "render/tracer_scenes.hpp"
 #include "render/tracer_statistics.hpp"
 
-namespace gazetrace {
+namespace gazetrace::adaptive_test {
 namespace {
 
 using namespace test;
@@ -203,4 +203,4 @@ TEST(Adaptive, WhatATargetPredictsComesOut) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::adaptive_test

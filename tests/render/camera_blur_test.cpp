@@ -11,7 +11,7 @@
 #include "support/picture_evidence.hpp"
 #include "trace/rays/camera_rays.hpp"
 
-namespace gazetrace {
+namespace gazetrace::camera_blur_test {
 namespace {
 
 using namespace test;
@@ -144,4 +144,4 @@ TEST(CameraBlur, DepthIsAlongTheViewOfTheMoment) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::camera_blur_test

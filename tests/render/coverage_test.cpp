@@ -14,7 +14,7 @@
 #include "gazetrace/guides.hpp"
 #include "render/tracer_scenes.hpp"
 
-namespace gazetrace {
+namespace gazetrace::coverage_test {
 namespace {
 
 using namespace test;
@@ -231,4 +231,4 @@ TEST(Coverage, RefusesWhatItCannotCount) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::coverage_test

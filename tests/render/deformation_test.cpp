@@ -11,7 +11,7 @@
 #include "support/chi2.hpp"
 #include "support/picture_evidence.hpp"
 
-namespace gazetrace {
+namespace gazetrace::deformation_test {
 namespace {
 
 using namespace test;
@@ -371,4 +371,4 @@ TEST(Deformation, AnErrorLeavesNothingOfItsPose) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::deformation_test

@@ -14,7 +14,7 @@
 #include "trace/kernel/kernel.hpp"
 #include "trace/samples/sample_list.hpp"
 
-namespace gazetrace {
+namespace gazetrace::extreme_frame_test {
 namespace {
 
 using namespace test;
@@ -258,4 +258,4 @@ TEST(ExtremeFrame, TexturesOfSixteenThousandTexelsAndOfOne) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::extreme_frame_test

@@ -9,7 +9,7 @@
 #include "gazetrace/error.hpp"
 #include "render/tracer_scenes.hpp"
 
-namespace gazetrace {
+namespace gazetrace::extreme_geometry_test {
 namespace {
 
 using namespace test;
@@ -168,4 +168,4 @@ TEST(ExtremeGeometry, VerticesThatAreNoNumbersAreRefusedByName) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::extreme_geometry_test

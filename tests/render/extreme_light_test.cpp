@@ -12,7 +12,7 @@
 #include "support/chi2.hpp"
 #include "trace/kernel/path_kernel.hpp"
 
-namespace gazetrace {
+namespace gazetrace::extreme_light_test {
 namespace {
 
 using namespace test;
@@ -200,4 +200,4 @@ TEST(ExtremeLight, APunctualLightThatOverflowsIsNotDropped) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::extreme_light_test

@@ -10,7 +10,7 @@
 #include "render/tracer_scenes.hpp"
 #include "support/gltf_builder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::extreme_scale_test {
 namespace {
 
 using namespace test;
@@ -293,4 +293,4 @@ TEST(ExtremeScale, MirroredAndZeroScales) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::extreme_scale_test

@@ -14,7 +14,7 @@
 #include "render/tracer_scenes.hpp"
 #include "support/picture_evidence.hpp"
 
-namespace gazetrace {
+namespace gazetrace::frame_renderer_test {
 namespace {
 
 using namespace test;
@@ -147,4 +147,4 @@ TEST(FrameRenderer, RefusesToGuessAFilter) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::frame_renderer_test

@@ -12,7 +12,7 @@
 #include "support/chi2.hpp"
 #include "support/reference_bsdf.hpp"
 
-namespace gazetrace {
+namespace gazetrace::furnace_test {
 namespace {
 
 using namespace test;
@@ -240,4 +240,4 @@ TEST(Furnace, AWhiteSphereIsInvisible) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::furnace_test

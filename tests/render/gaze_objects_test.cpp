@@ -10,7 +10,7 @@
 #include "gazetrace/gaze_objects.hpp"
 #include "gazetrace/resolve.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_objects_test {
 namespace {
 
 struct Ray {
@@ -271,4 +271,4 @@ TEST(GazeObjects, ABorderInTheMiddleHalvesTheCone) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_objects_test

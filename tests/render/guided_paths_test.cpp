@@ -13,7 +13,7 @@
 #include "support/picture_evidence.hpp"
 #include "trace/guiding/guiding_field.hpp"
 
-namespace gazetrace {
+namespace gazetrace::guided_paths_test {
 namespace {
 
 using namespace test;
@@ -258,4 +258,4 @@ TEST(GuidedPaths, NothingToFind) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::guided_paths_test

@@ -12,7 +12,7 @@
 #include "material/directional_albedo.hpp"
 #include "render/tracer_scenes.hpp"
 
-namespace gazetrace {
+namespace gazetrace::guides_test {
 namespace {
 
 using namespace test;
@@ -230,4 +230,4 @@ TEST(DirectionalAlbedo, IsTheMeanWeightOfBsdfSamples) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::guides_test

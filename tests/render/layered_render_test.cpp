@@ -13,7 +13,7 @@
 #include "support/chi2.hpp"
 #include "support/picture_evidence.hpp"
 
-namespace gazetrace {
+namespace gazetrace::layered_render_test {
 namespace {
 
 using namespace test;
@@ -326,4 +326,4 @@ TEST(LayeredRender, ACoatedLampIsTheSameHoweverItIsFound) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::layered_render_test

@@ -10,7 +10,7 @@
 #include "support/picture_evidence.hpp"
 #include "trace/rays/camera_rays.hpp"
 
-namespace gazetrace {
+namespace gazetrace::lens_test {
 namespace {
 
 using namespace test;
@@ -221,4 +221,4 @@ TEST(Lens, TheSameBitsForAnyThreadCount) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::lens_test

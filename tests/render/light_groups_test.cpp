@@ -15,7 +15,7 @@
 #include "render/tracer_scenes.hpp"
 #include "support/reference_bsdf.hpp"
 
-namespace gazetrace {
+namespace gazetrace::light_groups_test {
 namespace {
 
 using namespace test;
@@ -259,4 +259,4 @@ TEST(LightGroups, LayersAddUpToPicturesThatOtherFramesJoin) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::light_groups_test

@@ -18,7 +18,7 @@
 #include "support/chi2.hpp"
 #include "support/picture_evidence.hpp"
 
-namespace gazetrace {
+namespace gazetrace::mitsuba_reference_test {
 namespace {
 
 using namespace test;
@@ -170,4 +170,4 @@ TEST(MitsubaReference, NoWindowDiffers) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::mitsuba_reference_test

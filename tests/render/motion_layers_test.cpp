@@ -10,7 +10,7 @@
 #include "gazetrace/frame_renderer.hpp"
 #include "render/tracer_scenes.hpp"
 
-namespace gazetrace {
+namespace gazetrace::motion_layers_test {
 namespace {
 
 using namespace test;
@@ -186,4 +186,4 @@ TEST(MotionLayers, TheSkyTurnsWithTheCameraAndWhatIsBehindItHasNoMotion) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::motion_layers_test

@@ -11,7 +11,7 @@
 #include "support/gltf_builder.hpp"
 #include "support/picture_evidence.hpp"
 
-namespace gazetrace {
+namespace gazetrace::object_blur_test {
 namespace {
 
 using namespace test;
@@ -343,4 +343,4 @@ TEST(ObjectBlur, GltfAnimationsMoveMeshes) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::object_blur_test

@@ -15,7 +15,7 @@
 #include "trace/lights/light_sampling.hpp"
 #include "trace/samples/sampler.hpp"
 
-namespace gazetrace {
+namespace gazetrace::optimized_loops_test {
 namespace {
 
 double resident_mib() {
@@ -90,4 +90,4 @@ TEST(EnvironmentLoops, ManyAtOnceAreTheSameAsOneByOne) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::optimized_loops_test

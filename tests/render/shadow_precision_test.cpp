@@ -7,7 +7,7 @@
 
 #include "render/tracer_scenes.hpp"
 
-namespace gazetrace {
+namespace gazetrace::shadow_precision_test {
 namespace {
 
 using namespace test;
@@ -106,4 +106,4 @@ TEST(ShadowPrecision, LampsThatMoveShineUnderEveryWayOfSampling) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::shadow_precision_test

@@ -6,7 +6,7 @@
 
 #include "render/tracer_scenes.hpp"
 
-namespace gazetrace {
+namespace gazetrace::surface_motion_test {
 namespace {
 
 using namespace test;
@@ -214,4 +214,4 @@ TEST(SurfaceMotion, AShapeCarriesItsSurface) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::surface_motion_test

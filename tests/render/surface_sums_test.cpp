@@ -14,7 +14,7 @@
 #include "support/picture_evidence.hpp"
 #include "support/reconstruct.hpp"
 
-namespace gazetrace {
+namespace gazetrace::surface_sums_test {
 namespace {
 
 using namespace test;
@@ -414,4 +414,4 @@ TEST(GuidedFilter, HalfTransparentSurfacesAreNotStippled) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::surface_sums_test

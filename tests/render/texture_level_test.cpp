@@ -11,7 +11,7 @@
 #include "gazetrace/guides.hpp"
 #include "render/tracer_scenes.hpp"
 
-namespace gazetrace {
+namespace gazetrace::texture_level_test {
 namespace {
 
 using namespace test;
@@ -97,4 +97,4 @@ TEST(TextureLevel, FollowsTheCoordinatesOfEachTexture) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::texture_level_test

@@ -9,7 +9,7 @@
 #include "trace/kernel/kernel.hpp"
 #include "trace/samples/sample_list.hpp"
 
-namespace gazetrace {
+namespace gazetrace::tracer_determinism_test {
 namespace {
 
 using namespace test;
@@ -161,4 +161,4 @@ TEST(TracerDeterminism, OnlyPixelReplaysItsSite) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::tracer_determinism_test

@@ -8,7 +8,7 @@
 #include "render/tracer_scenes.hpp"
 #include "render/tracer_statistics.hpp"
 
-namespace gazetrace {
+namespace gazetrace::tracer_light_test {
 namespace {
 
 using namespace test;
@@ -168,4 +168,4 @@ TEST(TracerLight, ClampingBoundsIndirectLightOnly) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::tracer_light_test

@@ -5,7 +5,7 @@
 #include "render/tracer_scenes.hpp"
 #include "render/tracer_statistics.hpp"
 
-namespace gazetrace {
+namespace gazetrace::tracer_mean_test {
 namespace {
 
 using namespace test;
@@ -217,4 +217,4 @@ TEST(TracerMean, AFoveatedFrameHasTheUniformFramesMean) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::tracer_mean_test

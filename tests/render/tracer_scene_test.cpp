@@ -6,7 +6,7 @@
 
 #include "render/tracer_scenes.hpp"
 
-namespace gazetrace {
+namespace gazetrace::tracer_scene_test {
 namespace {
 
 using namespace test;
@@ -278,4 +278,4 @@ TEST(TracerScene, AnEmptySceneRenders) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::tracer_scene_test

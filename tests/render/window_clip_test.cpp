@@ -15,7 +15,7 @@
 #include "render/tracer_scenes.hpp"
 #include "render/tracer_statistics.hpp"
 
-namespace gazetrace {
+namespace gazetrace::window_clip_test {
 namespace {
 
 using namespace test;
@@ -292,4 +292,4 @@ TEST_F(WindowReferenceTest, WhatIsAsFarOffHasNoBrightSpecksInWhatCounts) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::window_clip_test

@@ -12,7 +12,7 @@
 #include "gazetrace/pipeline.hpp"
 #include "render/tracer_scenes.hpp"
 
-namespace gazetrace {
+namespace gazetrace::window_render_test {
 namespace {
 
 using namespace test;
@@ -316,4 +316,4 @@ TEST(WindowRender, FramesAtRestTrainOnce) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::window_render_test

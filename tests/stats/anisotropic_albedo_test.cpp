@@ -13,7 +13,7 @@
 #include "support/layered_kinds.hpp"
 #include "trace/samples/sampler.hpp"
 
-namespace gazetrace {
+namespace gazetrace::anisotropic_albedo_test {
 namespace {
 
 using test::layered;
@@ -200,4 +200,4 @@ TEST(AnisotropicAlbedo, SurfacesAreReciprocal) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::anisotropic_albedo_test

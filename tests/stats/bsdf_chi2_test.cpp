@@ -10,7 +10,7 @@
 #include "support/reference_bsdf.hpp"
 #include "trace/samples/sampler.hpp"
 
-namespace gazetrace {
+namespace gazetrace::bsdf_chi2_test {
 namespace {
 
 constexpr int kSide = 16;  // cells along each axis
@@ -181,4 +181,4 @@ TEST(BsdfSampling, FollowsItsDensityOverTheHemisphere) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::bsdf_chi2_test

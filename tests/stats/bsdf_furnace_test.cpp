@@ -7,7 +7,7 @@
 #include "support/reference_bsdf.hpp"
 #include "trace/samples/sampler.hpp"
 
-namespace gazetrace {
+namespace gazetrace::bsdf_furnace_test {
 namespace {
 
 using test::ReferenceBsdf;
@@ -92,4 +92,4 @@ TEST(BsdfFurnace, AlbedoEqualsReferenceQuadrature) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::bsdf_furnace_test

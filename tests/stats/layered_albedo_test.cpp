@@ -13,7 +13,7 @@
 #include "support/layered_kinds.hpp"
 #include "trace/samples/sampler.hpp"
 
-namespace gazetrace {
+namespace gazetrace::layered_albedo_test {
 namespace {
 
 using test::layered;
@@ -140,4 +140,4 @@ TEST(LayeredAlbedo, ColoredSurfacesNeverReturnMoreThanTheyGet) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::layered_albedo_test

@@ -17,7 +17,7 @@
 #include "support/layered_kinds.hpp"
 #include "support/reference_bsdf.hpp"
 
-namespace gazetrace {
+namespace gazetrace::layered_bsdf_chi2_test {
 namespace {
 
 using Model = LayeredBsdf;
@@ -257,4 +257,4 @@ TEST(LayeredBsdfSampling, FollowsItsDensity) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::layered_bsdf_chi2_test

@@ -14,7 +14,7 @@
 #include "support/layered_furnace.hpp"
 #include "support/layered_kinds.hpp"
 
-namespace gazetrace {
+namespace gazetrace::layered_furnace_test {
 namespace {
 
 using test::layered;
@@ -191,4 +191,4 @@ TEST(LayeredFurnaces, LayersOverEveryBase) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::layered_furnace_test

@@ -12,7 +12,7 @@
 #include "trace/lights/light_sampling.hpp"
 #include "trace/samples/sampler.hpp"
 
-namespace gazetrace {
+namespace gazetrace::light_statistics_test {
 namespace {
 
 constexpr std::uint32_t kSamples = 200000;
@@ -259,4 +259,4 @@ TEST(Irradiance, EqualsClosedForms) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::light_statistics_test

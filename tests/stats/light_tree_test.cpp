@@ -12,7 +12,7 @@
 #include "support/chi2.hpp"
 #include "trace/lights/light_sampling.hpp"
 
-namespace gazetrace {
+namespace gazetrace::light_tree_test {
 namespace {
 
 class Random {
@@ -226,4 +226,4 @@ TEST(LightTree, ExtremeIntensitiesStayFinite) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::light_tree_test

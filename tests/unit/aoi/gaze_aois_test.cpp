@@ -10,7 +10,7 @@
 #include "gazetrace/gaze_synth.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_aois_test {
 namespace {
 
 std::string error_of(const std::string& path, const std::optional<DisplayGeometry>& display = std::nullopt) {
@@ -145,4 +145,4 @@ TEST(GazeUncertainty, ComesFromTheLog) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_aois_test

@@ -9,7 +9,7 @@
 
 #include "gazetrace/gaze_outlines.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_outlines_test {
 namespace {
 
 using Ring = std::vector<PixelCorner>;
@@ -130,4 +130,4 @@ TEST(GazeOutlines, OfNoiseAreTheNoise) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_outlines_test

@@ -6,7 +6,7 @@
 
 #include "aoi/seen_surfaces.hpp"
 
-namespace gazetrace {
+namespace gazetrace::seen_surfaces_test {
 namespace {
 
 // A wall of 40 x 40 places in the plane z, `step_m` apart and centered.
@@ -87,4 +87,4 @@ TEST_F(SeenSurfacesOf, PlacesBeyondEveryCellAreFound) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::seen_surfaces_test

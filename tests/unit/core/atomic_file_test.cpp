@@ -47,7 +47,7 @@ extern "C" int rename(const char* from, const char* to) noexcept {
                              : static_cast<int>(::syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
 }
 
-namespace gazetrace {
+namespace gazetrace::atomic_file_test {
 namespace {
 
 constexpr int kWriters = 4, kTimes = 300;
@@ -166,4 +166,4 @@ TEST(AtomicFile, AFileThatCannotBePutInPlaceLeavesItsNameFree) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::atomic_file_test

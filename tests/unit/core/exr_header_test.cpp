@@ -11,7 +11,7 @@
 
 #include "gazetrace/error.hpp"
 
-namespace gazetrace {
+namespace gazetrace::exr_header_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -82,4 +82,4 @@ TEST(ExrHeader, AValueOfAnotherSizeThanIsStatedIsRefused) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::exr_header_test

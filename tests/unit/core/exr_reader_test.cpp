@@ -30,7 +30,7 @@
 #include "output/exr.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::exr_reader_test {
 namespace {
 
 using testing::HasSubstr;
@@ -328,4 +328,4 @@ TEST(ExrReader, WhatIsNoLightIsRefusedByItsChannels) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::exr_reader_test

@@ -8,7 +8,7 @@
 #include "core/text.hpp"
 #include "support/text_file.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_number_test {
 namespace {
 
 constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
@@ -130,4 +130,4 @@ TEST(TextFile, ByteOrderMarksAndUtf16) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_number_test

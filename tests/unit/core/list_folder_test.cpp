@@ -31,7 +31,7 @@ extern "C" dirent* readdir(DIR* folder) {
   return reinterpret_cast<dirent* (*)(DIR*)>(system_function)(folder);
 }
 
-namespace gazetrace {
+namespace gazetrace::list_folder_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -103,4 +103,4 @@ TEST_F(ListFolder, ReadersOfFoldersTellOfAFailure) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::list_folder_test

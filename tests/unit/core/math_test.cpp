@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gazetrace {
+namespace gazetrace::math_test {
 namespace {
 
 TEST(Angle, KeepsDigitsNearZeroAndPi) {
@@ -44,4 +44,4 @@ TEST(Affine, RotationOfIgnoresScaleAndRoundTrips) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::math_test

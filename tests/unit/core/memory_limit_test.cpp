@@ -10,7 +10,7 @@
 
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::memory_limit_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -60,4 +60,4 @@ TEST(MemoryLimit, AtMostWhatTheMachineHas) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::memory_limit_test

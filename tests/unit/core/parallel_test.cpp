@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace gazetrace {
+namespace gazetrace::parallel_test {
 namespace {
 
 TEST(Parallel, EveryIndexOnceForAnyNumberOfThreads) {
@@ -40,4 +40,4 @@ TEST(Parallel, LoopsInsideLoopsEnd) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::parallel_test

@@ -13,7 +13,7 @@
 #include "core/radiance_file.hpp"
 #include "gazetrace/error.hpp"
 
-namespace gazetrace {
+namespace gazetrace::picture_files_test {
 namespace {
 
 using testing::HasSubstr;
@@ -137,4 +137,4 @@ TEST(JpegFile, SegmentsThatDoNotConcernThePictureAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::picture_files_test

@@ -14,7 +14,7 @@
 #include "support/png_bytes.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::png_file_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -299,4 +299,4 @@ TEST(UsablePng, LargeEmptyPicturesAreRead) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::png_file_test

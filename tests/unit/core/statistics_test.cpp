@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace gazetrace {
+namespace gazetrace::statistics_test {
 namespace {
 
 TEST(Statistics, TheThreeRanksDifferForAnEvenCountAndAgreeForAnOddOne) {
@@ -109,4 +109,4 @@ TEST(Statistics, TheMeanOfAPictureIsThatOfItsPixels) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::statistics_test

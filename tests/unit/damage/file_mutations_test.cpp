@@ -13,7 +13,7 @@
 #include "support/file_seeds.hpp"
 #include "support/json_mutator.hpp"
 
-namespace gazetrace {
+namespace gazetrace::file_mutations_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -113,4 +113,4 @@ TEST_F(FileMutations, EveryReaderMeetsTheFilesOfAllOthers) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::file_mutations_test

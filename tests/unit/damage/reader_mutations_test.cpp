@@ -10,7 +10,7 @@
 #include "support/reader_fuzz.hpp"
 #include "support/text_file.hpp"
 
-namespace gazetrace {
+namespace gazetrace::reader_mutations_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -185,4 +185,4 @@ TEST(ReaderMutations, EveryReaderMeetsTheFilesOfAllOthers) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::reader_mutations_test

@@ -17,7 +17,7 @@
 #include "support/map_consistency.hpp"
 #include "support/sampling_models.hpp"
 
-namespace gazetrace {
+namespace gazetrace::density_map_test {
 namespace {
 
 PlanarView small_view() {
@@ -209,4 +209,4 @@ TEST(DensityMap, ExtremesGiveMaps) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::density_map_test

@@ -19,7 +19,7 @@
 #include "gazetrace/foveation.hpp"
 #include "support/sampling_models.hpp"
 
-namespace gazetrace {
+namespace gazetrace::density_models_test {
 namespace {
 
 std::optional<double> cutoff_of(const FoveationSettings& settings, double e, double meridian_deg = 0) {
@@ -365,4 +365,4 @@ TEST(DensityExtremes, SmallAnglesKeepTheirDigits) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::density_models_test

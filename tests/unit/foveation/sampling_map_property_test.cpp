@@ -13,7 +13,7 @@
 
 #include "gazetrace/foveation.hpp"
 
-namespace gazetrace {
+namespace gazetrace::sampling_map_property_test {
 namespace {
 
 struct Case {
@@ -48,7 +48,7 @@ int region_by_definition(const Case& c, int x, int y) {
   return 2;
 }
 
-void expect_consistent(const SamplingMap& map) {
+void expect_consistent_blocks(const SamplingMap& map) {
   // Every pixel belongs to exactly one site, and the site's region is the pixel's.
   Image<int> owners(map.width_px, map.height_px, 0);
   std::vector<MapRegion> totals(map.regions.size());
@@ -169,7 +169,7 @@ TEST(SamplingMapProperty, EqualsTheDefinitionAtEveryPixel) {
       }
     }
     EXPECT_EQ(wrong, 0);
-    expect_consistent(map);
+    expect_consistent_blocks(map);
     if (HasFailure()) {
       return;
     }
@@ -215,8 +215,8 @@ TEST(SamplingMapProperty, ExtremeFrames) {
   FoveationSettings settings;
   const PlanarView dot = view_of_perspective(1.0, 1, 1);
   std::get<RegionSampling>(settings.sampling).blocks_px = {64, 64};
-  expect_consistent(make_sampling_map(settings, dot, dot.direction(0.5, 0.5)));
-  expect_consistent(make_sampling_map(settings, dot, dot.direction(1e6, 0)));
+  expect_consistent_blocks(make_sampling_map(settings, dot, dot.direction(0.5, 0.5)));
+  expect_consistent_blocks(make_sampling_map(settings, dot, dot.direction(1e6, 0)));
   for (const int block : {1, 3, 7, 64}) {
     std::get<RegionSampling>(settings.sampling).blocks_px = {block, 64};
     Case c;
@@ -225,7 +225,7 @@ TEST(SamplingMapProperty, ExtremeFrames) {
     c.gaze = c.view.direction(7000.3, 9);
     std::get<RegionSampling>(c.settings.sampling).eccentricities_deg = {0.5, 25};
     const SamplingMap map = make_sampling_map(c.settings, c.view, c.gaze);
-    expect_consistent(map);
+    expect_consistent_blocks(map);
     for (int y = 0; y < map.height_px; ++y) {
       for (int x = 0; x < map.width_px; ++x) {
         ASSERT_EQ(map.region(x, y), region_by_definition(c, x, y));
@@ -235,4 +235,4 @@ TEST(SamplingMapProperty, ExtremeFrames) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::sampling_map_property_test

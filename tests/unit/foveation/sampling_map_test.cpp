@@ -15,7 +15,7 @@
 #include "gazetrace/error.hpp"
 #include "gazetrace/foveation.hpp"
 
-namespace gazetrace {
+namespace gazetrace::sampling_map_test {
 namespace {
 
 PlanarView paper_view() {
@@ -362,4 +362,4 @@ TEST(SamplingMap, RefusesWhatIsNoGazeOrNoFrame) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::sampling_map_test

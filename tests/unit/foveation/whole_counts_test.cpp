@@ -11,7 +11,7 @@
 #include "foveation/whole_counts.hpp"
 #include "gazetrace/foveation.hpp"
 
-namespace gazetrace {
+namespace gazetrace::whole_counts_test {
 namespace {
 
 FoveationSettings geisler_perry() {
@@ -98,4 +98,4 @@ TEST(WholeCounts, HalfASampleMakesNoStripes) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::whole_counts_test

@@ -9,7 +9,7 @@
 
 #include "gazetrace/gaze.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_at_test {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -275,4 +275,4 @@ TEST(GazeClock, ScaleIsExactInWideIntegers) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_at_test

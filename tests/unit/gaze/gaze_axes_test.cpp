@@ -11,7 +11,7 @@
 #include "gazetrace/gaze_inspect.hpp"
 #include "support/gaze_format_files.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_axes_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -171,4 +171,4 @@ TEST_F(GazeAxisFindings, TheVerdictSaysWhichAxesWereNotTested) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_axes_test

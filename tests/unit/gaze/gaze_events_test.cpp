@@ -10,7 +10,7 @@
 #include "gazetrace/gaze_synth.hpp"
 #include "support/event_scores.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_events_test {
 namespace {
 
 // Directions at 100 Hz: azimuth by sample number, degrees; NaN is lost.
@@ -461,4 +461,4 @@ TEST(GazeEvents, NothingSeenAndNothingThere) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_events_test

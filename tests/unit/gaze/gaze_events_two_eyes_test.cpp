@@ -7,7 +7,7 @@
 
 #include "gazetrace/gaze_events.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_events_two_eyes_test {
 namespace {
 
 // Both eyes at 500 Hz with a little noise of their own, and steps of the azimuth by minimum jerk in 20 ms.
@@ -88,4 +88,4 @@ TEST(GazeEvents, BinocularEventsAreThoseOfBothEyes) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_events_two_eyes_test

@@ -13,7 +13,7 @@
 
 #include "gazelog/log_file.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_inspect_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -205,4 +205,4 @@ TEST(GazeInspect, ColumnsOfOneNameAreNotTakenByChance) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_inspect_test

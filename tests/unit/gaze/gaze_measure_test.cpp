@@ -8,7 +8,7 @@
 
 #include "gazetrace/gaze_synth.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_measure_test {
 namespace {
 
 TEST(GazeMeasure, QualityCountsWhatIsMissing) {
@@ -88,4 +88,4 @@ TEST(GazeMeasure, TrialsAreThoseOfTheBlocks) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_measure_test

@@ -11,7 +11,7 @@
 #include "gazetrace/gaze_process.hpp"
 #include "gazetrace/gaze_synth.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_process_test {
 namespace {
 
 // A screen 1 m wide and high at 1 m: u and v as functions of seconds; NaN is lost.
@@ -378,4 +378,4 @@ TEST(GazeProcess, EveryStepTakesAnEmptyAndALostLog) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_process_test

@@ -10,7 +10,7 @@
 #include "gazetrace/gaze_write.hpp"
 #include "support/text_file.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_synth_test {
 namespace {
 
 TEST(GazeSynth, SaccadesAreOnTheMainSequence) {
@@ -156,4 +156,4 @@ TEST(GazeSynth, RefusesWhatNoEyeDoes) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_synth_test

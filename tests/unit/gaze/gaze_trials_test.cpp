@@ -12,7 +12,7 @@
 #include "gazetrace/gaze_write.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_trials_test {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -177,4 +177,4 @@ TEST(GazeTrials, RulesThatContradictEachOtherAreRefused) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_trials_test

@@ -9,7 +9,7 @@
 
 #include "gazetrace/error.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_vergence_test {
 namespace {
 
 constexpr double kPupilsMm = 63;
@@ -125,4 +125,4 @@ TEST(GazeVergence, SaysWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_vergence_test

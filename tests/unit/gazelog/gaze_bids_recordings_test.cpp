@@ -7,7 +7,7 @@
 
 #include "support/gaze_format_files.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_bids_recordings_test {
 namespace {
 
 using ::testing::AllOf;
@@ -97,4 +97,4 @@ TEST_F(GazeBidsRecordings, GazeInTheHeadIsInAngles) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_bids_recordings_test

@@ -8,7 +8,7 @@
 
 #include "support/gaze_format_files.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_bids_units_test {
 namespace {
 
 using ::testing::AllOf;
@@ -93,4 +93,4 @@ TEST_F(GazeBidsUnits, TheEyesPlaceIsNotDroppedInSilence) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_bids_units_test

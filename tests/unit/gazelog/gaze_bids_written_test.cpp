@@ -13,7 +13,7 @@
 #include "gazetrace/gaze_write.hpp"
 #include "support/gaze_format_files.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_bids_written_test {
 namespace {
 
 using ::testing::AllOf;
@@ -110,4 +110,4 @@ TEST_F(GazeBidsWritten, LineEndsInTextsDoNotBreakTheCsv) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_bids_written_test

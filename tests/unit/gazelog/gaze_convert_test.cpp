@@ -14,7 +14,7 @@
 #include "gazetrace/gaze_write.hpp"
 #include "support/text_file.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_convert_test {
 namespace {
 
 // Equal bits, or both missing.
@@ -337,4 +337,4 @@ TEST(GazeConvert, OtherNamesAreNoBids) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_convert_test

@@ -10,7 +10,7 @@
 #include "gazetrace/gaze.hpp"
 #include "support/text_file.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_damage_test {
 namespace {
 
 void expect_answer(const std::string& path, const std::string& format, GazeFrame frame) {
@@ -129,4 +129,4 @@ TEST(GazeDamage, EveryFormatOnTextOfEveryOther) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_damage_test

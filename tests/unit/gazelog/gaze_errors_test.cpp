@@ -5,7 +5,7 @@
 #include "gazetrace/gaze.hpp"
 #include "support/text_file.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_errors_test {
 namespace {
 
 struct Case {
@@ -182,4 +182,4 @@ TEST(GazeErrors, FilesAndFormats) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_errors_test

@@ -10,7 +10,7 @@
 #include "gazetrace/gaze_write.hpp"
 #include "support/text_file.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_eyes_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -235,4 +235,4 @@ TEST_F(GazeEyes, WhatIsNotThereCannotBeChosen) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_eyes_test

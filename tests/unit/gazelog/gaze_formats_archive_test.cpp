@@ -10,7 +10,7 @@
 
 #include "support/gaze_format_files.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_formats_archive_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -279,4 +279,4 @@ TEST_F(GazeFormats, FlagsMendWhatALogGotWrong) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_formats_archive_test

@@ -10,7 +10,7 @@
 #include "gazelog/scene_lens.hpp"
 #include "support/gaze_format_files.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_formats_head_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -166,4 +166,4 @@ TEST_F(GazeFormats, GlassesThreeCutOffInItsLastLine) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_formats_head_test

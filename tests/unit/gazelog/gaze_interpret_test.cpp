@@ -18,7 +18,7 @@
 #include "support/gaze_format_files.hpp"
 #include "support/gaze_log_text.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_interpret_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -254,4 +254,4 @@ TEST(RawRows, TakeLittleMemory) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_interpret_test

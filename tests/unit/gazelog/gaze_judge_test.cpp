@@ -15,7 +15,7 @@
 #include "gazetrace/gaze_read.hpp"
 #include "support/text_file.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_judge_test {
 namespace {
 
 using ::testing::AllOf;
@@ -383,4 +383,4 @@ TEST_F(GazeJudge, PlainFilesStayPlain) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_judge_test

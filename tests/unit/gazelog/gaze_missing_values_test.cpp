@@ -13,7 +13,7 @@
 #include "gazetrace/gaze_inspect.hpp"
 #include "support/gaze_format_files.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_missing_values_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -277,4 +277,4 @@ TEST_F(GazeMissingValues, WhereGazeIsAPlaceIsAPlace) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_missing_values_test

@@ -13,7 +13,7 @@
 #include "gazetrace/gaze_write.hpp"
 #include "support/text_file.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_read_test {
 namespace {
 
 using ::testing::AllOf;
@@ -467,4 +467,4 @@ TEST(GazeSamples, PlainCsvOfMilliseconds) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_read_test

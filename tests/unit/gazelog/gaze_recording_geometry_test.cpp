@@ -9,7 +9,7 @@
 #include "gazetrace/gaze_inspect.hpp"
 #include "support/gaze_format_files.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_recording_geometry_test {
 namespace {
 
 using ::testing::AllOf;
@@ -122,4 +122,4 @@ TEST_F(GazeRecordingGeometry, APartThatDoesNothingIsTold) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_recording_geometry_test

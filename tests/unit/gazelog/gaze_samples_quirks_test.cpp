@@ -11,7 +11,7 @@
 
 #include "gazetrace/gaze.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_samples_quirks_test {
 namespace {
 
 std::string sample(const std::string& name) {
@@ -187,4 +187,4 @@ TEST(GazeSamplesQuirks, PicoRepeatsItsGaze) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_samples_quirks_test

@@ -12,7 +12,7 @@
 
 #include "gazetrace/gaze.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_samples_table_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -463,4 +463,4 @@ TEST(EveryFileBeside, IsRefusedForTheRightReason) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_samples_table_test

@@ -9,7 +9,7 @@
 
 #include "gazetrace/gaze.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_samples_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -461,4 +461,4 @@ TEST(GazeSamples, PlainCsvCanBeLookedAtWithoutItsDisplay) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_samples_test

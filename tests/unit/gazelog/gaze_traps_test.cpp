@@ -8,7 +8,7 @@
 
 #include "support/gaze_format_files.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_traps_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -152,4 +152,4 @@ TEST_F(GazeTraps, SdkPairsAndMissingEyes) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_traps_test

@@ -9,7 +9,7 @@
 #include "gazetrace/gaze_inspect.hpp"
 #include "support/gaze_format_files.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_unit_doubts_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -91,4 +91,4 @@ TEST_F(GazeUnitDoubts, AMarkIsNoOtherUnit) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_unit_doubts_test

@@ -10,7 +10,7 @@
 
 #include "gazetrace/job.hpp"
 
-namespace gazetrace {
+namespace gazetrace::former_options_test {
 namespace {
 
 using testing::ElementsAre;
@@ -169,4 +169,4 @@ TEST(FormerOptions, TheRecordOfAFinishedRunNeedsNoFilesThatAreGone) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::former_options_test

@@ -13,7 +13,7 @@
 #include "gazetrace/resolve.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::job_resolve_test {
 namespace {
 
 using testing::AllOf;
@@ -312,4 +312,4 @@ TEST_F(Resolve, StillsHaveRecordsOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::job_resolve_test

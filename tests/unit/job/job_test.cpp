@@ -12,7 +12,7 @@
 #include "job/defaults.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::job_test {
 namespace {
 
 using testing::HasSubstr;
@@ -310,4 +310,4 @@ TEST(IdleOptions, AreThoseThatWereGivenAndDoNothing) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::job_test

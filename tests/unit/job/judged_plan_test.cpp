@@ -11,7 +11,7 @@
 #include "pipeline/quality/discarded.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::judged_plan_test {
 namespace {
 
 using testing::AllOf;
@@ -146,4 +146,4 @@ TEST_F(JudgedPlan, ASinglePixelMustLieInTheFrameThatTheScreenShapes) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::judged_plan_test

@@ -7,7 +7,7 @@
 
 #include "gazetrace/job.hpp"
 
-namespace gazetrace {
+namespace gazetrace::option_table_test {
 namespace {
 
 constexpr std::size_t kMostRows = 120;
@@ -77,4 +77,4 @@ TEST(OptionTable, ValuesThatAreRefusedChangeNothing) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::option_table_test

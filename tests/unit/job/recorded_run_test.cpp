@@ -10,7 +10,7 @@
 #include "gazetrace/recorded_run.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::recorded_run_test {
 namespace {
 
 class RecordedRuns : public testing::Test {
@@ -101,4 +101,4 @@ TEST_F(RecordedRuns, ARecordOfOtherPicturesSaysNothing) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::recorded_run_test

@@ -10,7 +10,7 @@
 #include "gazetrace/job.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::run_job_test {
 namespace {
 
 using testing::ElementsAre;
@@ -164,4 +164,4 @@ TEST_F(CompareRuns, GazeOfAnotherPlaceIsRefused) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::run_job_test

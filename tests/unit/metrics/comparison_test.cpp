@@ -10,7 +10,7 @@
 
 #include "gazetrace/error.hpp"
 
-namespace gazetrace {
+namespace gazetrace::comparison_test {
 namespace {
 
 constexpr int kWidth = 90;
@@ -310,4 +310,4 @@ TEST(Comparison, MetricsThatNeedGazeNeedAScreen) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::comparison_test

@@ -6,7 +6,7 @@
 
 #include "gazetrace/compare.hpp"
 
-namespace gazetrace {
+namespace gazetrace::error_map_test {
 namespace {
 
 std::array<int, 3> pixel(const DisplayImage& picture, int x, int y) {
@@ -96,4 +96,4 @@ TEST(GazeOverlay, GazeMayLieOffThePicture) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::error_map_test

@@ -13,7 +13,7 @@
 #include "metrics/contrast_sensitivity.hpp"
 #include "metrics/sliding_spectrum.hpp"
 
-namespace gazetrace {
+namespace gazetrace::flicker_test {
 namespace {
 
 constexpr int kWidth = 300;
@@ -279,4 +279,4 @@ TEST(SlidingSpectrum, PowerIsTheMeanSquare) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::flicker_test

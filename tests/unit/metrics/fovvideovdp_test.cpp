@@ -15,7 +15,7 @@
 #include "metrics/temporal_channels.hpp"
 #include "support/metrics_reference.hpp"
 
-namespace gazetrace {
+namespace gazetrace::fovvideovdp_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -437,4 +437,4 @@ TEST(FovVideoVdp, SameBitsForAnyNumberOfThreadsAndPlaces) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::fovvideovdp_test

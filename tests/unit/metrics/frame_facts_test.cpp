@@ -8,7 +8,7 @@
 #include "gazetrace/compare.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::frame_facts_test {
 namespace {
 
 using testing::HasSubstr;
@@ -80,4 +80,4 @@ TEST_F(FrameFactsOf, FilesOfEarlierVersionsAreRead) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::frame_facts_test

@@ -6,7 +6,7 @@
 #include "gazetrace/output.hpp"
 #include "support/metrics_reference.hpp"
 
-namespace gazetrace {
+namespace gazetrace::metrics_reference_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -159,4 +159,4 @@ TEST(MetricsReference, FramesOfTheVideos) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::metrics_reference_test

@@ -14,7 +14,7 @@
 #include "gazetrace/fovvideovdp.hpp"
 #include "metrics/flip_kernels.hpp"
 
-namespace gazetrace {
+namespace gazetrace::metrics_test {
 namespace {
 
 ImageRgb noise(int width, int height, unsigned seed, float scale = 1) {
@@ -302,4 +302,4 @@ TEST(ColorMaps, EndsOfTheTables) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::metrics_test

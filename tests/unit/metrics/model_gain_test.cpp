@@ -10,7 +10,7 @@
 #include "gazetrace/error.hpp"
 #include "support/visible_noise.hpp"
 
-namespace gazetrace {
+namespace gazetrace::model_gain_test {
 namespace {
 
 TEST(ModelGain, TheMetricSeesEqualNoise) {
@@ -78,4 +78,4 @@ TEST(ModelGain, ASmallFieldHasNothingToGain) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::model_gain_test

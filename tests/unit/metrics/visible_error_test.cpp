@@ -14,7 +14,7 @@
 #include "gazetrace/error.hpp"
 #include "support/visible_noise.hpp"
 
-namespace gazetrace {
+namespace gazetrace::visible_error_test {
 namespace {
 
 // What a prediction may be off by. The measured JOD of a single picture scatters by about 0.01.
@@ -489,4 +489,4 @@ TEST(VisibleError, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::visible_error_test

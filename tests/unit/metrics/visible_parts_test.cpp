@@ -17,7 +17,7 @@
 #include "visible/pyramid_rows.hpp"
 #include "visible/variance_pyramid.hpp"
 
-namespace gazetrace {
+namespace gazetrace::visible_parts_test {
 namespace {
 
 TEST(MaskedMoment, AbsoluteMomentsOfANormal) {
@@ -243,4 +243,4 @@ TEST(VisibleAllocation, HostileValuesCountAsNothing) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::visible_parts_test

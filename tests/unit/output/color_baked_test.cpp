@@ -11,7 +11,7 @@
 #include "color/baked_view.hpp"
 #include "gazetrace/color.hpp"
 
-namespace gazetrace {
+namespace gazetrace::color_baked_test {
 namespace {
 
 // Colours of all hues, from black to far beyond white.
@@ -102,4 +102,4 @@ TEST(ColorBaked, IsUsedOnlyWhereItPays) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::color_baked_test

@@ -9,7 +9,7 @@
 #include "gazetrace/output.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::color_config_test {
 namespace {
 
 // Two displays; "plain" shows scene-linear values of the reference space, "half" half of them. The look doubles red.
@@ -213,4 +213,4 @@ TEST_F(ColorConfig, BrokenButNotNeeded) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::color_config_test

@@ -10,7 +10,7 @@
 #include "color/ocio.hpp"
 #include "gazetrace/color.hpp"
 
-namespace gazetrace {
+namespace gazetrace::color_view_test {
 namespace {
 
 struct Sample {
@@ -178,4 +178,4 @@ TEST(ColorView, EmptyAndSinglePixelFrames) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::color_view_test

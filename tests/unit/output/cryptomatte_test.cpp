@@ -11,7 +11,7 @@
 #include "gazetrace/cryptomatte.hpp"
 #include "gazetrace/error.hpp"
 
-namespace gazetrace {
+namespace gazetrace::cryptomatte_test {
 namespace {
 
 // Published values of MurmurHash3_x86_32.
@@ -90,4 +90,4 @@ TEST(Cryptomatte, TheHeaderHasTheFourAttributes) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::cryptomatte_test

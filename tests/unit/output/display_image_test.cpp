@@ -11,7 +11,7 @@
 #include "support/full_disk.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::display_image_test {
 namespace {
 
 const std::string kDigest = "0123456789abcdef0123456789abcdef";
@@ -152,4 +152,4 @@ TEST(DisplayImage, ForeignAndBrokenFilesHaveNoDigest) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::display_image_test

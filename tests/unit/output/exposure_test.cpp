@@ -7,7 +7,7 @@
 
 #include "gazetrace/color.hpp"
 
-namespace gazetrace {
+namespace gazetrace::exposure_test {
 namespace {
 
 double measure(const ImageRgb& image, ExposureSettings settings = {ExposureMode::log_average}) {
@@ -84,4 +84,4 @@ TEST(Exposure, IsFiniteWhateverTheFrame) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::exposure_test

@@ -20,7 +20,7 @@
 #include "support/full_disk.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::exr_frame_test {
 namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
@@ -469,4 +469,4 @@ TEST(ExrFrame, SamplingMap) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::exr_frame_test

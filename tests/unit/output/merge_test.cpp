@@ -9,7 +9,7 @@
 #include "gazetrace/output.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::merge_test {
 namespace {
 
 class Merge : public testing::Test {
@@ -250,4 +250,4 @@ TEST_F(Merge, NothingToMerge) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::merge_test

@@ -7,7 +7,7 @@
 #include "gazetrace/output.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::run_record_test {
 namespace {
 
 TEST(RunRecord, RoundTrip) {
@@ -102,4 +102,4 @@ TEST(RunRecord, PartsCarryTheirFramesInTheName) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::run_record_test

@@ -4,7 +4,7 @@
 
 #include "gazetrace/output.hpp"
 
-namespace gazetrace {
+namespace gazetrace::sequence_name_test {
 namespace {
 
 TEST(SequenceName, Table) {
@@ -144,4 +144,4 @@ TEST(SequenceName, BitsToAskFor) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::sequence_name_test

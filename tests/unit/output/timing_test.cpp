@@ -5,7 +5,7 @@
 #include "gazetrace/output.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::timing_test {
 namespace {
 
 TimingRow example(std::int32_t frame) {
@@ -120,4 +120,4 @@ TEST(Timing, BrokenTables) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::timing_test

@@ -8,7 +8,7 @@
 
 #include "gazetrace/video.hpp"
 
-namespace gazetrace {
+namespace gazetrace::video_draw_test {
 namespace {
 
 using testing::HasSubstr;
@@ -133,4 +133,4 @@ TEST(VideoSettings, WhatFilesHold) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::video_draw_test

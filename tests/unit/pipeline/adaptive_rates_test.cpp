@@ -12,7 +12,7 @@
 #include "pipeline/quality/adaptive_rates.hpp"
 #include "pipeline/quality/visible_noise.hpp"
 
-namespace gazetrace {
+namespace gazetrace::adaptive_rates_test {
 namespace {
 
 double mean(const ImageGray& image) {
@@ -113,4 +113,4 @@ TEST(PilotBudget, MustLeaveMoreThanThePilot) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::adaptive_rates_test

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace gazetrace {
+namespace gazetrace::clip_rate_test {
 namespace {
 
 using testing::AllOf;
@@ -51,4 +51,4 @@ TEST(ClipRate, SmallFramesWhoseLooksDifferLeaveADoubtAndWindowsOfLargeOnesDoNot)
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::clip_rate_test

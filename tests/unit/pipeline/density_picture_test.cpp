@@ -24,7 +24,7 @@
 #include "support/map_consistency.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::density_picture_test {
 namespace {
 
 constexpr int kWidth = 190, kHeight = 101;
@@ -248,4 +248,4 @@ TEST(DensityPicture, ModelsThatFollowAPictureNeedOne) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::density_picture_test

@@ -9,7 +9,7 @@
 #include "gazetrace/motion.hpp"
 #include "trace/rays/camera_rays.hpp"
 
-namespace gazetrace {
+namespace gazetrace::frame_part_test {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 200;
@@ -97,4 +97,4 @@ TEST(FramePart, APartOfAPartIsThatOfTheFrame) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::frame_part_test

@@ -9,7 +9,7 @@
 
 #include "gazetrace/foveation.hpp"
 
-namespace gazetrace {
+namespace gazetrace::judged_windows_test {
 namespace {
 
 // With so many pixels a degree on the axis.
@@ -100,4 +100,4 @@ TEST(JudgedWindows, HaveTheirLargestSideWhateverAScreenIsSaidToBe) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::judged_windows_test

@@ -22,7 +22,7 @@
 
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::output_lock_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -329,4 +329,4 @@ TEST_F(OutputLocks, WhereNothingCanBeLockedItIsSaidOnceForEachFolder) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::output_lock_test

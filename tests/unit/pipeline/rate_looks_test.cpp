@@ -8,7 +8,7 @@
 #include <initializer_list>
 #include <limits>
 
-namespace gazetrace {
+namespace gazetrace::rate_looks_test {
 namespace {
 
 RateLooks of(std::initializer_list<RateLook> list) {
@@ -63,4 +63,4 @@ TEST(RateLooks, ASingleLookDoesNotTellHowLooksDiffer) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::rate_looks_test

@@ -9,7 +9,7 @@
 #include "gazetrace/foveation.hpp"
 #include "pipeline/frame_part.hpp"
 
-namespace gazetrace {
+namespace gazetrace::window_blocks_test {
 namespace {
 
 constexpr int kSide = 256;
@@ -57,4 +57,4 @@ TEST(WindowBlocks, AreThoseOfTheFrame) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::window_blocks_test

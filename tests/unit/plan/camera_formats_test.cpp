@@ -8,7 +8,7 @@
 #include "gazetrace/camera.hpp"
 #include "support/text_file.hpp"
 
-namespace gazetrace {
+namespace gazetrace::camera_formats_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -265,4 +265,4 @@ TEST_F(CameraFormats, UnityIsMirroredInCsvAndTum) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::camera_formats_test

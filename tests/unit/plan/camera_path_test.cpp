@@ -7,7 +7,7 @@
 #include "gazetrace/camera.hpp"
 #include "support/text_file.hpp"
 
-namespace gazetrace {
+namespace gazetrace::camera_path_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -235,4 +235,4 @@ TEST(CameraPath, UnitsScalePositions) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::camera_path_test

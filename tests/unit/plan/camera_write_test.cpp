@@ -10,7 +10,7 @@
 #include "gazetrace/camera.hpp"
 #include "support/text_file.hpp"
 
-namespace gazetrace {
+namespace gazetrace::camera_write_test {
 namespace {
 
 using Matrix = std::array<std::array<double, 3>, 3>;
@@ -208,4 +208,4 @@ TEST(PlaceCamera, TurnsScalesAndMoves) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::camera_write_test

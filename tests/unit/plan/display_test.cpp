@@ -9,7 +9,7 @@
 
 #include "gazetrace/error.hpp"
 
-namespace gazetrace {
+namespace gazetrace::display_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -143,4 +143,4 @@ TEST(NamedDisplays, AreCompleteAndMatchTheirDiagonals) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::display_test

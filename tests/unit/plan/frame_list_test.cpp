@@ -6,7 +6,7 @@
 #include "gazetrace/plan.hpp"
 #include "job/judged_frames.hpp"
 
-namespace gazetrace {
+namespace gazetrace::frame_list_test {
 namespace {
 
 using Frames = std::vector<std::int32_t>;
@@ -125,4 +125,4 @@ TEST(JudgedFrames, AreRunsThatTheMetricCanSeeWhole) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::frame_list_test

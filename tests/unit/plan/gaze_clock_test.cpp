@@ -11,7 +11,7 @@
 #include "gazetrace/gaze_synth.hpp"
 #include "gazetrace/plan.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gaze_clock_test {
 namespace {
 
 using testing::HasSubstr;
@@ -247,4 +247,4 @@ TEST(PlanEvents, InterpolationJumpsOverASaccade) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gaze_clock_test

@@ -8,7 +8,7 @@
 
 #include "gazetrace/plan.hpp"
 
-namespace gazetrace {
+namespace gazetrace::plan_frames_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -370,4 +370,4 @@ TEST(PrintPlan, JsonHoldsExactTimesAndUnits) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::plan_frames_test

@@ -6,7 +6,7 @@
 
 #include "gazetrace/plan.hpp"
 
-namespace gazetrace {
+namespace gazetrace::plan_shipped_logs_test {
 namespace {
 
 TEST(ShippedLogs, ReadAndPlan) {
@@ -34,4 +34,4 @@ TEST(ShippedLogs, ReadAndPlan) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::plan_shipped_logs_test

@@ -3,7 +3,7 @@
 
 #include "gazetrace/plan.hpp"
 
-namespace gazetrace {
+namespace gazetrace::shutter_test {
 namespace {
 
 TEST(Shutter, Forms) {
@@ -81,4 +81,4 @@ TEST(Shutter, HoldsThePathsEnds) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::shutter_test

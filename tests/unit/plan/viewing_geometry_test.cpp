@@ -10,7 +10,7 @@
 #include "gazetrace/plan.hpp"
 #include "support/text_file.hpp"
 
-namespace gazetrace {
+namespace gazetrace::viewing_geometry_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -213,4 +213,4 @@ TEST(PixelsPerDegree, StandForSizeAndDistance) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::viewing_geometry_test

@@ -11,7 +11,7 @@
 #include "gazetrace/reconstruct.hpp"
 #include "reconstruct/open_image_denoise.hpp"
 
-namespace gazetrace {
+namespace gazetrace::denoise_test {
 namespace {
 
 constexpr int kSize = 96;
@@ -108,4 +108,4 @@ TEST_F(Denoise, ThreadsChangeNoBit) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::denoise_test

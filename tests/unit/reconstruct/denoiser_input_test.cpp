@@ -10,7 +10,7 @@
 
 #include "support/guides_wall.hpp"
 
-namespace gazetrace {
+namespace gazetrace::denoiser_input_test {
 namespace {
 
 constexpr int kSize = kGuidesWallPx;
@@ -109,4 +109,4 @@ TEST(DenoiserInput, PixelsOfABlockHaveTheirOwnTextureUnderItsLight) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::denoiser_input_test

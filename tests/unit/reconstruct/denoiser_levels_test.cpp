@@ -11,7 +11,7 @@
 
 #include "foveation/sites.hpp"
 
-namespace gazetrace {
+namespace gazetrace::denoiser_levels_test {
 namespace {
 
 constexpr int kWidth = 203;  // no multiple of a block
@@ -153,4 +153,4 @@ TEST(DenoiserLevels, FrameOfSinglePixelsKeepsItsBits) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::denoiser_levels_test

@@ -12,7 +12,7 @@
 
 #include "gazetrace/reconstruct.hpp"
 
-namespace gazetrace {
+namespace gazetrace::open_image_denoise_test {
 namespace {
 
 constexpr int kSize = 96;
@@ -91,4 +91,4 @@ TEST_F(OpenImageDenoise, IsDescribedForRecords) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::open_image_denoise_test

@@ -11,7 +11,7 @@
 #include "support/guides_wall.hpp"
 #include "support/reconstruct.hpp"
 
-namespace gazetrace {
+namespace gazetrace::reconstruct_guided_borders_test {
 namespace {
 
 constexpr int kSize = kGuidesWallPx;
@@ -118,4 +118,4 @@ TEST(ReconstructGuidedBorders, WhatIsLeftOfACutBlockCountsAndLosesNoLight) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::reconstruct_guided_borders_test

@@ -11,7 +11,7 @@
 #include "support/guides_wall.hpp"
 #include "support/reconstruct.hpp"
 
-namespace gazetrace {
+namespace gazetrace::reconstruct_guided_noise_test {
 namespace {
 
 constexpr int kSize = kGuidesWallPx;
@@ -128,4 +128,4 @@ TEST(ReconstructGuidedNoise, TheEstimateOfItsErrorIsWithinAFactorOfThree) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::reconstruct_guided_noise_test

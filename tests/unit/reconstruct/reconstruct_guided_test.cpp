@@ -16,7 +16,7 @@
 #include "support/guides_wall.hpp"
 #include "support/reconstruct.hpp"
 
-namespace gazetrace {
+namespace gazetrace::reconstruct_guided_test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -410,4 +410,4 @@ TEST(ReconstructGuided, RefusesInputsWithoutGuides) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::reconstruct_guided_test

@@ -17,7 +17,7 @@
 #include "gazetrace/error.hpp"
 #include "support/reconstruct.hpp"
 
-namespace gazetrace {
+namespace gazetrace::reconstruct_test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -450,4 +450,4 @@ TEST(Reconstruct, RefusesUnknownFiltersAndForeignMaps) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::reconstruct_test

@@ -9,7 +9,7 @@
 #include "gazetrace/error.hpp"
 #include "gazetrace/reconstruct.hpp"
 
-namespace gazetrace {
+namespace gazetrace::reconstruction_needs_test {
 namespace {
 
 TEST(ReconstructionNeeds, OnlyGuidedFiltersNeedMoreThanSums) {
@@ -76,4 +76,4 @@ TEST(ChooseFilter, GuidedWhereAllSamplesAreThere) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::reconstruction_needs_test

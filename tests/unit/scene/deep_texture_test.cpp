@@ -17,7 +17,7 @@
 #include "trace/lights/emission_average.hpp"
 #include "trace/scene/texture.hpp"
 
-namespace gazetrace {
+namespace gazetrace::deep_texture_test {
 namespace {
 
 using test::PngColor;
@@ -245,4 +245,4 @@ TEST(ExtremeTexture, SixteenThousandTexelsAreFoundOneByOne) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::deep_texture_test

@@ -9,7 +9,7 @@
 #include "gazetrace/sky.hpp"
 #include "support/gltf_builder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::environment_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -279,4 +279,4 @@ TEST(ClearSky, ThePictureHoldsSunSkyAndGround) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::environment_test

@@ -6,7 +6,7 @@
 #include "gazetrace/scene.hpp"
 #include "support/gltf_builder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gltf_camera_test {
 namespace {
 
 using nlohmann::json;
@@ -214,4 +214,4 @@ TEST(CameraAnimation, MotionOfAMeshDoesNotMoveTheCamera) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gltf_camera_test

@@ -20,7 +20,7 @@
 #include "scene/gltf/draco_claims.hpp"
 #include "support/gltf_builder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gltf_compression_test {
 namespace {
 
 using nlohmann::json;
@@ -507,4 +507,4 @@ TEST(Draco, RefusesWhatDoesNotFitTheAccessors) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gltf_compression_test

@@ -12,7 +12,7 @@
 #include "support/picture_leaks.hpp"
 #include "support/png_bytes.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gltf_errors_test {
 namespace {
 
 using nlohmann::json;
@@ -490,4 +490,4 @@ TEST(BrokenContainers, OtherVersionsAndChunks) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gltf_errors_test

@@ -11,7 +11,7 @@
 #include "support/gltf_builder.hpp"
 #include "support/png_bytes.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gltf_material_extensions_test {
 namespace {
 
 using nlohmann::json;
@@ -257,4 +257,4 @@ TEST(MaterialExtensions, NumbersOutsideTheirRangeAreClampedAndTold) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gltf_material_extensions_test

@@ -9,7 +9,7 @@
 #include "support/gltf_builder.hpp"
 #include "support/png_bytes.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gltf_material_test {
 namespace {
 
 using nlohmann::json;
@@ -286,4 +286,4 @@ TEST(Extensions, UsedButUnknownIsOneWarningEach) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gltf_material_test

@@ -9,7 +9,7 @@
 #include "support/gltf_builder.hpp"
 #include "support/png_bytes.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gltf_mesh_test {
 namespace {
 
 using nlohmann::json;
@@ -297,4 +297,4 @@ TEST(Tangents, AreNotKeptWhereNothingReadsThem) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gltf_mesh_test

@@ -12,7 +12,7 @@
 #include "gazetrace/scene.hpp"
 #include "support/gltf_builder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gltf_morph_test {
 namespace {
 
 using namespace test;
@@ -240,4 +240,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.name; });
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gltf_morph_test

@@ -6,7 +6,7 @@
 #include "gazetrace/scene_contents.hpp"
 #include "support/gltf_builder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gltf_node_test {
 namespace {
 
 using nlohmann::json;
@@ -308,4 +308,4 @@ TEST(SceneContents, NamesWhatMovesAndDeforms) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gltf_node_test

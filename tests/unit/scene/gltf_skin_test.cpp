@@ -12,7 +12,7 @@
 #include "gazetrace/scene.hpp"
 #include "support/gltf_builder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gltf_skin_test {
 namespace {
 
 using namespace test;
@@ -357,4 +357,4 @@ TEST(GltfSkin, AMeshWithoutJointsCannotFollowASkin) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gltf_skin_test

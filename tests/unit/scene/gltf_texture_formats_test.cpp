@@ -13,7 +13,7 @@
 #include "gazetrace/scene.hpp"
 #include "support/gltf_builder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::gltf_texture_formats_test {
 namespace {
 
 using nlohmann::json;
@@ -113,4 +113,4 @@ TEST(BasisTexture, IsRefusedWhereRequiredAndReplacedWhereNot) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::gltf_texture_formats_test

@@ -8,7 +8,7 @@
 
 #include "gazetrace/scene.hpp"
 
-namespace gazetrace {
+namespace gazetrace::scene_files_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -193,4 +193,4 @@ TEST_F(SharedScenes, TextureTransformTestPutsTheArrowOnItsMark) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::scene_files_test

@@ -9,7 +9,7 @@
 #include "scene/texture.hpp"
 #include "support/png_bytes.hpp"
 
-namespace gazetrace {
+namespace gazetrace::scene_texture_test {
 namespace {
 
 using test::PngColor;
@@ -113,4 +113,4 @@ TEST(MipLevels, OddSizesKeepTheMean) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::scene_texture_test

@@ -7,7 +7,7 @@
 #include "support/gltf_builder.hpp"
 #include "support/png_bytes.hpp"
 
-namespace gazetrace {
+namespace gazetrace::smooth_glass_test {
 namespace {
 
 using nlohmann::json;
@@ -66,4 +66,4 @@ TEST(SmoothGlass, IsNotToldOtherwise) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::smooth_glass_test

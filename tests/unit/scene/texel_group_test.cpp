@@ -11,7 +11,7 @@
 #include "gazetrace/scene.hpp"
 #include "trace/scene/texture.hpp"
 
-namespace gazetrace {
+namespace gazetrace::texel_group_test {
 namespace {
 
 Texture noise(int width, int height, std::uint32_t seed, TextureWrap wrap) {
@@ -124,4 +124,4 @@ TEST(TexelGroup, UnlikeTexturesAreReadApart) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::texel_group_test

@@ -17,7 +17,7 @@
 #include "results/lookup.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::results_test {
 namespace {
 
 using nlohmann::ordered_json;
@@ -289,4 +289,4 @@ TEST(Results, ANameThatCannotBeLookedUpIsAnErrorOfTheInput) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::results_test

@@ -11,7 +11,7 @@
 #include "gazetrace/results.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::results_texts_test {
 namespace {
 
 using nlohmann::ordered_json;
@@ -124,4 +124,4 @@ TEST(ResultsCsv, EndToEndStandsAfterTheSpeedUp) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::results_texts_test

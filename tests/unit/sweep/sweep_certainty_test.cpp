@@ -8,7 +8,7 @@
 #include "gazetrace/error.hpp"
 #include "sweep/certainty.hpp"
 
-namespace gazetrace {
+namespace gazetrace::sweep_certainty_test {
 namespace {
 
 using testing::HasSubstr;
@@ -90,4 +90,4 @@ TEST(Certainty, ASweepThatCanTellNoLevelEndsWithTheWayOut) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::sweep_certainty_test

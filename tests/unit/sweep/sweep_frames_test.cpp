@@ -9,7 +9,7 @@
 #include "sweep/pictures.hpp"
 #include "sweep/rows.hpp"
 
-namespace gazetrace {
+namespace gazetrace::sweep_frames_test {
 namespace {
 
 constexpr std::int64_t kFrameNs = 40'000'000;  // 25 a second
@@ -182,4 +182,4 @@ TEST(SweepPictures, UpscalingKeepsRampsAndMeans) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::sweep_frames_test

@@ -6,7 +6,7 @@
 #include "gazetrace/sweep_plan.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace gazetrace {
+namespace gazetrace::sweep_plan_test {
 namespace {
 
 // Rows that vary one option of every kind.
@@ -157,4 +157,4 @@ TEST_F(SweepPlanFile, AGridOfMoreCombinationsThanAnybodyRendersIsRefused) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::sweep_plan_test

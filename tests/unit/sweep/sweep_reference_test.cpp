@@ -6,7 +6,7 @@
 
 #include "sweep/reference.hpp"
 
-namespace gazetrace {
+namespace gazetrace::sweep_reference_test {
 namespace {
 
 SweepReference reference_of(int frames) {
@@ -121,4 +121,4 @@ TEST(ReferenceEstimate, LoadsNothingWhereTheSceneDecidesNothing) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::sweep_reference_test

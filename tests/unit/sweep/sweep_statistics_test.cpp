@@ -10,7 +10,7 @@
 #include "sweep/measure.hpp"
 #include "sweep/scorer.hpp"
 
-namespace gazetrace {
+namespace gazetrace::sweep_statistics_test {
 namespace {
 
 constexpr auto kLower = MetricDirection::lower;
@@ -141,4 +141,4 @@ TEST(SweepMeasure, TheReferencesVarianceIsAQuarterOfTheHalvesDifference) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::sweep_statistics_test

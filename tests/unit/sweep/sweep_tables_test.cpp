@@ -7,7 +7,7 @@
 #include "support/sweep_row.hpp"
 #include "sweep/conclude.hpp"
 
-namespace gazetrace {
+namespace gazetrace::sweep_tables_test {
 namespace {
 
 using testing::ElementsAre;
@@ -125,4 +125,4 @@ TEST(SweepTables, RowsOfDifferentReferencesAreOnDifferentFronts) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::sweep_tables_test

@@ -8,7 +8,7 @@
 #include "support/sweep_row.hpp"
 #include "sweep/conclude.hpp"
 
-namespace gazetrace {
+namespace gazetrace::sweep_text_test {
 namespace {
 
 using testing::HasSubstr;
@@ -108,4 +108,4 @@ TEST(SweepText, TellsTheFrontOfEachReference) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::sweep_text_test

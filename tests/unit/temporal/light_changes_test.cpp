@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace gazetrace {
+namespace gazetrace::light_changes_test {
 namespace {
 
 // Of one site with so many samples.
@@ -156,4 +156,4 @@ TEST(LightChanges, WhatChangesInOneBlockStaysThere) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::light_changes_test

@@ -9,7 +9,7 @@
 #include "support/reference_bsdf.hpp"
 #include "trace/samples/sampler.hpp"
 
-namespace gazetrace {
+namespace gazetrace::bsdf_test {
 namespace {
 
 using test::ReferenceBsdf;
@@ -188,4 +188,4 @@ TEST(Bsdf, NothingComesFromBelow) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::bsdf_test

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace gazetrace {
+namespace gazetrace::crossed_pixels_test {
 namespace {
 
 struct View {
@@ -104,4 +104,4 @@ TEST(CrossedPixels, AreThoseOfTheDefinition) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::crossed_pixels_test

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace gazetrace {
+namespace gazetrace::guiding_field_test {
 namespace {
 
 constexpr double kSphere = 4 * kPi;
@@ -295,4 +295,4 @@ TEST(GuidingField, ThreadsMakeNoDifference) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::guiding_field_test

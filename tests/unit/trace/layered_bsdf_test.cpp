@@ -11,7 +11,7 @@
 #include "support/layered_kinds.hpp"
 #include "trace/samples/sampler.hpp"
 
-namespace gazetrace {
+namespace gazetrace::layered_bsdf_test {
 namespace {
 
 using test::layered;
@@ -129,4 +129,4 @@ TEST(LayeredBsdf, ExtremesStayFinite) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::layered_bsdf_test

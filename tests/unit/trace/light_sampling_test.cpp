@@ -9,7 +9,7 @@
 #include "core/hash.hpp"
 #include "trace/samples/sampler.hpp"
 
-namespace gazetrace {
+namespace gazetrace::light_sampling_test {
 namespace {
 
 constexpr SampleKey kKey = make_sample_key(11, 0, 0);
@@ -377,4 +377,4 @@ TEST(LightChoice, GivesEveryPresentClassItsFloor) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::light_sampling_test

@@ -16,7 +16,7 @@
 #include "material/lobes/thin_film.hpp"
 #include "material/lobes/volume.hpp"
 
-namespace gazetrace {
+namespace gazetrace::lobes_test {
 namespace {
 
 constexpr std::array kRoughness{0.0, 1e-4, 0.01, 0.1, 0.4, 1.0};
@@ -337,4 +337,4 @@ TEST(ThinFilm, HasItsLimits) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::lobes_test

@@ -7,7 +7,7 @@
 
 #include "trace/rays/embree.hpp"
 
-namespace gazetrace {
+namespace gazetrace::ray_recorder_test {
 namespace {
 
 // Rays along -z at x = 0, 1, 2 ..., of which those to the left of x = 10.5 meet a triangle: eleven.
@@ -48,4 +48,4 @@ TEST(RayRecorder, EveryRayThatHitsCounts) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::ray_recorder_test

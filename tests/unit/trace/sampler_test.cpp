@@ -10,7 +10,7 @@
 
 #include "support/chi2.hpp"
 
-namespace gazetrace {
+namespace gazetrace::sampler_test {
 namespace {
 
 using sampler_detail::reverse_bits;
@@ -212,4 +212,4 @@ TEST(Sampler, PairsOfDimensionsAreShuffledApart) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::sampler_test

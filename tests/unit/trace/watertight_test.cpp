@@ -12,7 +12,7 @@
 
 #include "trace/rays/embree.hpp"
 
-namespace gazetrace {
+namespace gazetrace::watertight_test {
 namespace {
 
 constexpr int kSpokes = 97;
@@ -118,4 +118,4 @@ TEST(RayScene, RaysThroughSharedEdgesOfInstancesHit) {
 }
 
 }  // namespace
-}  // namespace gazetrace
+}  // namespace gazetrace::watertight_test
