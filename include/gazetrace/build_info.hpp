@@ -8,6 +8,6 @@ namespace gazetrace {
 
 double peak_memory_mib();         // of this process so far
 std::string build_description();  // compiler, whether code is optimised, and whether assertions are on
-std::string instruction_set();    // what the library was compiled for
+std::string instruction_set();    // the target of the compilation
 
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scene cameras say what is pictured: the projection, and the pose as a function of video time.
+// Scene cameras decide the view: the projection, and the pose as a function of video time.
 #pragma once
 
 #include <cstdint>
@@ -46,7 +46,7 @@ double pixel_step_m(const Projection& projection, int height_px);
 // more above and below, and crops nothing (glTF 3.10.3). Less than half of one of `width_px` pixels is no difference.
 Projection fit_projection(Projection projection, int width_px, int height_px);
 
-// A thin lens. What lies at the focus distance is sharp; a point at distance d along the view axis blurs into a disc of
+// A thin lens. Points at the focus distance are sharp; a point at distance d along the view axis blurs into a disc of
 // diameter 2 radius |d - focus| / (d focus), measured in tangents of the view angle. The field of view is that of the
 // projection wherever the focus is (no breathing). Orthographic views have a lens too, as a bundle of parallel axes.
 struct Lens {
@@ -118,7 +118,7 @@ struct CameraReadOptions {
   std::string format;              // a name of `camera_formats()`; empty: found by suffix and content
   std::optional<CameraAxes> axes;  // empty: those of the format; gl for CSV, TUM and EuRoC, which do not say
   PathInterpolation interpolation = PathInterpolation::linear;
-  std::optional<double> yfov_rad;  // empty: what the file states, else 50 degrees
+  std::optional<double> yfov_rad;  // empty: the file's, else 50 degrees
   // The frame rate of formats that count frames and state no times (Nuke, NeRF, COLMAP). Their frame n gets the time of
   // the middle of the video's frame n, so that each of their poses is rendered as it stands where the rates agree.
   FrameRate fps;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares two sequences frame by frame: metrics per frame, per retinal region and band of eccentricity, and over the
-// sequence, separately for what the eye did. Only numbers are kept of a frame, so sequences may have any length.
+// sequence, separately by eye movement. Only numbers are kept of a frame, so sequences may have any length.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ struct RetinalRegions {
 // 0 < first < second.
 RetinalRegions retinal_regions(const std::array<double, 2>& eccentricities_deg);
 
-// What the eye did while a frame was shown; each class is scored separately. in_flight: in a saccade, or within
+// The eye movement while a frame was shown; each class is scored separately. in_flight: in a saccade, or within
 // kAfterSaccadeNs of its end, when little is seen. unclassified: there is gaze, but its movement is not known.
 enum class GazeClass : std::uint8_t { fixation, in_flight, blink, no_gaze, unclassified };
 inline constexpr std::array<GazeClass, 5> kGazeClasses{GazeClass::fixation, GazeClass::in_flight, GazeClass::blink,
@@ -63,11 +63,11 @@ struct ComparisonSettings {
 // range: peak (above 0), contrast (above 1), ambient light (0 or more), reflectivity (0..1) and relmse's epsilon (above
 // 0), all of them finite; and where code values are relative and the room's light makes black as bright as white.
 void check_comparison(const ComparisonSettings& settings);
-// Enters what of the settings follows from others: the peak of the display and how it answers to code values, and from
+// Enters the settings that follow from others: the peak of the display and how it answers to code values, and from
 // the view the pixels per degree.
 void complete_settings(ComparisonSettings& settings, int threads);
-// Computes what the settings leave empty of HDR-FLIP's exposures from this reference. Call it with the first frame,
-// since frames compare only with the same exposures. Does nothing unless hdr_flip is among the metrics.
+// Computes those of HDR-FLIP's exposures that the settings leave empty from this reference. Call it with the first
+// frame, since frames compare only with the same exposures. Does nothing unless hdr_flip is among the metrics.
 void fix_flip_exposures(ComparisonSettings& settings, const ImageRgb& reference_light);
 
 struct FramePair {
@@ -112,8 +112,8 @@ const SequenceScores& headline(const std::vector<SequenceScores>& summary);
 
 class Comparison {
  public:
-  // Error(usage) for unknown metrics, for what check_comparison() refuses, and for metrics that need gaze where there
-  // is no view.
+  // Error(usage) for unknown metrics, for settings that check_comparison() refuses, and for metrics that need gaze
+  // where there is no view.
   Comparison(const ComparisonSettings& settings, int width_px, int height_px);
   ~Comparison();
   Comparison(const Comparison&) = delete;
@@ -129,14 +129,14 @@ class Comparison {
 
 // A map as a picture in the colours of magma: FLIP as it is, roots of squared errors, SSIM as 1 - v, SMAPE halved.
 // FovVideoVDP and flicker are shown as heat over the reference in grey: blue, green, yellow and red stand for
-// 0.75, 1.5, 2.25 and 3 JOD, or for 2.5, 5, 7.5 and 10 times what is just visible. Without the reference's code values
+// 0.75, 1.5, 2.25 and 3 JOD, or for 2.5, 5, 7.5 and 10 times the visible threshold. Without the reference's code values
 // the grey is black.
 DisplayImage error_map_picture(const std::string& metric, const ImageGray& map, const ImageRgb& reference_code = {});
 // Draws the borders of the regions and a cross at the gaze, in white with a black rim. Parts outside the picture are
 // cut off.
 void draw_gaze(DisplayImage& picture, const PlanarView& view, const Vec2d& gaze_px, const RetinalRegions& regions);
 
-// What a frame's file states in its header; empty where it does not.
+// The data in the header of a frame's file; empty where it has none.
 struct FrameFacts {
   std::optional<double> exposure_ev;
   std::optional<double> frames_per_second;
@@ -148,7 +148,7 @@ struct FrameFacts {
 // Display images state all of this but the frame rate; DPX files leave out the gaze, too.
 FrameFacts read_frame_facts(const std::string& path);
 
-// A picture with what its header states. Floats are linear light, everything else is code values.
+// A picture with the data of its header. Floats are linear light, everything else is code values.
 struct ComparedPicture {
   MetricPicture picture;
   bool is_linear = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frames, geometry and gaze that follow from what compare() is asked, for it and for videos.
+// The frames, geometry and gaze that follow from the settings of compare(), for it and for videos.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace gazetrace {
 
-// What the gaze of the frames is taken from.
+// The source of the frames' gaze.
 struct GazeSource {
   std::string words;        // empty: no frame has a gaze on a screen
   bool is_of_test = false;  // gaze_true of the test's pictures, as no frame of the reference has one
@@ -26,14 +26,14 @@ struct CompareInputs {
   RetinalRegions regions;
   std::optional<ResolvedJob> gaze_log;  // the log that is given, with its clock
   std::vector<EyeMovement> movements;   // of the log's samples, where it knows angles
-  std::optional<double> stated_fps;     // by option, pictures or run records, whatever the number of frames
+  std::optional<double> stated_fps;     // by option, pictures or run records, for any number of frames
   double frames_per_second = 0;         // 0: a single picture, or not known
   GazeSource gaze;
 };
 
 CompareInputs load_compare_inputs(const CompareJob& job);
 std::string picture_path(const std::string& pattern, std::int32_t frame);
-// Error(input) where the two differ in what decides how they look, unless told `anyway`.
+// Error(input) where the two differ in settings of their look, unless told `anyway`.
 void check_comparable(const CompareJob& job, const CompareInputs& inputs, const ComparedPicture& reference,
                       const ComparedPicture& test, const std::string& reference_path, const std::string& test_path);
 // As given, else as the reference was shown.

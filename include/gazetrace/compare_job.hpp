@@ -43,7 +43,7 @@ struct CompareJob : MetricChoice {
 // All settings but the two patterns, gaze_in_frame and want_maps.
 OptionSchema<CompareJob> compare_schema();
 
-// What the scores depend on, by name, in the order of printing.
+// The settings that the scores depend on, by name, in the order of printing.
 using CompareConditions = std::vector<std::pair<std::string, std::string>>;
 
 struct ComparedSequences {
@@ -53,8 +53,8 @@ struct ComparedSequences {
   Warnings over_limits;                 // one line for each of fail_above and fail_below that is not kept
 };
 
-// Reads, scores and writes what the settings name. `on_frame` gets each frame's scores before the next one is read; it
-// may take the maps out of them. Error(input) where the two sequences differ in frames, size, view, exposure or gaze
+// Reads, scores and writes the files of the settings. `on_frame` gets each frame's scores before the next one is read;
+// it may take the maps out of them. Error(input) where the two sequences differ in frames, size, view, exposure or gaze
 // and `anyway` is not set; Error(usage) where a metric lacks the gaze, the time or the light that it needs, and where
 // an output would replace an input or, without `overwrite`, anything.
 ComparedSequences compare(const CompareJob& job, const std::function<void(FrameScores& scores)>& on_frame = {});

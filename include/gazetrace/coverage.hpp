@@ -11,7 +11,7 @@
 
 namespace gazetrace {
 
-// What counts as one thing: surfaces of the same identifier. 0: not counted, as if nothing were there.
+// One thing: surfaces of the same identifier. 0: not counted, as if nothing were there.
 struct SurfaceIds {
   bool by_material = false;        // of Scene::materials; otherwise of Scene::instances
   std::vector<std::uint32_t> ids;  // one for each of them

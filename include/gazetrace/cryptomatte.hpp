@@ -27,7 +27,7 @@ std::uint32_t cryptomatte_id(std::string_view name);
 // Things of the same name share one matte.
 const std::vector<std::string>& cryptomatte_layers();
 
-// What one layer needs of the scene, for all of its frames.
+// The inputs of one layer from the scene, for all of its frames.
 struct MatteTable {
   std::string layer;  // one of cryptomatte_layers()
   SurfaceIds surfaces;

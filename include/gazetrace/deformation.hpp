@@ -14,7 +14,7 @@ namespace gazetrace {
 struct Geometry;
 struct TextureRef;
 
-// What a target of weight 1 adds to every vertex. An attribute that it leaves alone is empty.
+// The offsets that a target of weight 1 adds to every vertex. An attribute that it leaves alone is empty.
 struct MorphTarget {
   std::vector<Vec3f> positions, normals, tangents;
   std::vector<Vec2f> uv0, uv1;

@@ -38,7 +38,7 @@ struct DensityInfo {
 };
 std::vector<DensityInfo> densities();
 
-// What the program asks of a sampling, whichever it is.
+// The interface of every sampling.
 struct SamplingTraits {
   const char* name;
   const char* description;
@@ -65,7 +65,7 @@ struct DensitySampling {
 };
 // Texts such as "acuity", "mar:slope=0.0275,foveal=0.0208"; a file whose name ends in .csv, which is read; or one that
 // ends in .exr, with a place for the frame's number or without. Throws Error(usage) for unknown names and values out of
-// range, and what load_density_curve() throws.
+// range, and the errors of load_density_curve().
 DensitySampling parse_density(std::string_view text, const std::string& place = "`density`");
 // Its text, with those parameters that are not as published: parse_density(to_string(d)) gives the same density.
 std::string to_string(const DensitySampling& density);

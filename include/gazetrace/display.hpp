@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Viewing geometry: where a pixel lies as seen from the eye.
 //
-// Two geometries meet in a frame. *Where the eye is* comes from the eye and the display (this header); *what is
-// pictured* comes from the scene camera (camera.hpp). Eccentricity uses the first, except for logs of gaze directions
+// Two geometries meet in a frame. *The place of the eye* comes from the eye and the display (this header);
+// *the view* comes from the scene camera (camera.hpp). Eccentricity uses the first, except for logs of gaze directions
 // (head-mounted displays), where the two coincide and the camera's frustum is the view.
 #pragma once
 
@@ -40,7 +40,7 @@ const std::vector<NamedDisplay>& named_displays();
 DisplayGeometry display_by_name(std::string_view name);  // Error(usage) with the known names
 
 // Reads a display from a JSON object whose keys are the fields of DisplayGeometry; the eye's position and the luminance
-// may be missing, "name" and "description" may be added. Error(input) for unknown keys and for what check_display
+// may be missing, "name" and "description" may be added. Error(input) for unknown keys and the errors of check_display
 // refuses.
 DisplayGeometry load_display(const std::string& path);
 

@@ -21,12 +21,12 @@ enum class ErrorKind {
 class Error : public std::runtime_error {
  public:
   // One line is built from three parts: `place` (a file, file:line or setting; may be empty), `problem`, and
-  // `remedy` (what to do; may be empty): "place: problem; remedy".
+  // `remedy` (may be empty): "place: problem; remedy".
   //
   // The library names a *setting* in back quotes, as in "`gaze-start`: the log has no such time"; the names are those
   // of a job's options. The program shows them as its flags: "--gaze-start". The same holds for warnings.
   //
-  // What a file says may stand in any of the parts: each is shortened by bounded().
+  // Text of a file may be in any of the parts: each is shortened by bounded().
   Error(ErrorKind kind, std::string_view place, std::string_view problem, std::string_view remedy = {});
   [[nodiscard]] ErrorKind kind() const noexcept { return kind_; }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Divides a job into tasks for many machines. The tasks of an array render chunks of the frames, or measure
-// chunks of the rows of a sweep; a last task joins what they made. Every engine runs the same tasks, by one
+// chunks of the rows of a sweep; a last task joins their outputs. Every engine runs the same tasks, by one
 // script that lies in the farm's folder.
 #pragma once
 
@@ -27,7 +27,7 @@ struct FarmSettings {
   std::string engine;              // a name of farm_engines()
   std::string program;             // gazetrace itself, as the tasks call it
   std::uint32_t chunks = 0;        // so many, of about equal cost; at least 1
-  int threads = 0;                 // of a task; 0: what its machine has
+  int threads = 0;                 // of a task; 0: all of its machine's
   int retries = 3;                 // of a task that failed by chance or was interrupted
   ByteCount memory;                // of a task; 0: by estimate_scene() and the size of the pictures
   std::optional<DurationNs> time;  // limit of a task; empty: none
@@ -36,23 +36,23 @@ struct FarmSettings {
   bool confine = false;            // the job is by others: it and its tasks keep to its folder or data set
 };
 
-// What is divided into chunks.
+// The kind of work that is divided into chunks.
 enum class FarmKind : std::uint8_t { frames, sweep };
 
-// What is to be done, for status, retry and every engine; farm.json in the farm's folder.
+// The whole job, for status, retry and every engine; farm.json in the farm's folder.
 struct FarmPlan {
   FarmKind kind = FarmKind::frames;
   std::string name, engine, program, container, job_file;
-  // What the tasks denoise by on the machine where the farm is planned, denoiser_description(): theirs must be the
+  // The denoiser on the machine where the farm is planned, denoiser_description(): theirs must be the
   // same. Empty: by nothing, or not known, as in a container.
   std::string filter, denoiser;
   std::string folder;                // of the farm: `farm` in that of the run, absolute like the other paths
   std::string run_folder;            // where the outputs lie
-  std::string run_name;              // what the run's own files there begin with, run_name_of() without the folder
+  std::string run_name;              // the prefix of the run's own files there, run_name_of() without the folder
   std::string work_folder;           // where the tasks are started, since paths in the job count from there
   std::vector<std::string> chunks;   // the frames of each; of a sweep, its rows
   std::vector<double> samples;       // that the plan expects of each; 0: not known
-  std::int32_t files_per_frame = 1;  // of what the whole sequence has
+  std::int32_t files_per_frame = 1;  // in the whole sequence
   int threads = 0, retries = 0;
   std::uint64_t memory_mib = 0;
   std::int64_t time_s = 0;  // limit of a task; 0: none
@@ -71,12 +71,12 @@ FarmPlan read_farm(const std::string& folder);
 
 // The names of a plan's tasks: "1" to the number of chunks, "finish", "after-1", ...
 std::vector<std::string> farm_tasks(const FarmPlan& plan);
-// What the engine reads, for these chunks; by names within the farm's folder.
+// The engine's input for these chunks; by names within the farm's folder.
 std::map<std::string, std::string> farm_files(const FarmPlan& plan, const std::vector<std::size_t>& chunks);
 // Writes farm.json, the borders of the chunks, the script of the tasks and the engine's files. Error(input) where parts
 // of another division of the frames lie in the folder, which no merge could join with these.
 void write_farm(const FarmPlan& plan, const std::vector<std::size_t>& chunks);
-// The command of the shell that hands the farm's files over to the engine; empty: run_local() is what runs it.
+// The command of the shell that hands the farm's files over to the engine; empty: run_local() runs it.
 std::string submit_command(const FarmPlan& plan);
 
 // unknown: it has begun and not ended, and whether it still runs cannot be told, since its folder cannot be locked.
@@ -85,7 +85,7 @@ const char* to_string(TaskState state);
 
 struct TaskStatus {
   std::string name;    // "3", "finish"
-  std::string frames;  // a frame list; empty for what follows the sequence
+  std::string frames;  // a frame list; empty for the tasks after the sequence
   TaskState state = TaskState::missing;
   std::size_t all = 0, done = 0;  // frames
   std::optional<int> exit_code;   // of the last attempt, where the script of the tasks saw it end
@@ -110,7 +110,7 @@ std::vector<std::size_t> chunks_to_retry(const FarmStatus& status);
 // this machine takes for the run. `run_name` as FarmPlan has it.
 void check_farm_denoiser(const std::string& run_folder, const std::string& run_name, const std::string& filter,
                          const std::string& denoiser);
-// Whether chunks can be handed over once more while others run, and what follows waits for these, too.
+// Whether chunks can be handed over once more while others run, and the tasks after them wait for these, too.
 bool can_retry_beside_running(const FarmPlan& plan);
 // Whether the command of submit_command() ends when the last task has, and not when the engine has taken them.
 bool submit_waits(const FarmPlan& plan);
@@ -120,10 +120,10 @@ struct LocalSettings {
   std::function<bool()> stop;  // asked often; true: running tasks are asked to end, and no other begins
   std::function<void(const std::string& task, const std::string& what)> tell;  // "1", "begins"; "1", "exit code 0"
 };
-// Runs these chunks on this machine, and what follows once all chunks of the plan are done. Returns the worst exit
-// code: of a task that failed before that of one that was interrupted (4), else 0. A task that ends with exit code 3, 4
-// or by a signal is tried again as often as the plan says. Error(runtime) where another process is at the tasks of this
-// folder.
+// Runs these chunks on this machine, and the tasks after them once all chunks of the plan are done. Returns the worst
+// exit code: of a task that failed before that of one that was interrupted (4), else 0. A task that ends with exit code
+// 3, 4 or by a signal is tried again as often as the plan says. Error(runtime) where another process is at the tasks of
+// this folder.
 int run_local(const FarmPlan& plan, const std::vector<std::size_t>& chunks, const LocalSettings& settings);
 
 }  // namespace gazetrace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flicker: temporal contrast that a test sequence has in excess of its reference, in multiples of what the eye can just
-// see at that place of the visual field.
+// Flicker: temporal contrast that a test sequence has in excess of its reference, in multiples of the least that the
+// eye can see at that place of the visual field.
 //
 // Luminance is averaged over square patches of four sizes, s = 0..3: n_s = 2^s max(1, round(ppd / 8)) pixels a side, so
 // that two patches are one cycle of rho_s = ppd / (2 n_s), about 4, 2, 1 and 0.5 cycles per degree. For each patch a
@@ -18,9 +18,9 @@
 // cortical magnification of Dougherty et al. 2003), evaluated at every f_k.
 //
 // It leaves out colour, changes slower than a second or faster than half the frame rate, and that the eye may follow
-// what moves (patches are fixed to the screen). Two equally noisy sequences do not score 0, since the excess is taken
-// patch by patch; the score of one reference against another is the noise floor. A picture that never changes scores 0
-// however wrong it is: read it together with "temporal_bias".
+// moving objects (patches are fixed to the screen). Two equally noisy sequences do not score 0, since the excess is
+// taken patch by patch; the score of one reference against another is the noise floor. A picture that never changes
+// scores 0 however wrong it is: read it together with "temporal_bias".
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options that are no more, and what stands in their place: old settings files and scripts are understood for one
-// version, or told what to do.
+// Removed options and their replacements: old settings files and scripts are understood for one
+// version, or refused with a remedy.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct FormerOption {
   bool takes_value = false;                                       // on the command line, and not a flag
   std::string beside, beside_values;                              // which also has to be given; values with | between
   std::vector<std::pair<std::string, std::string>> replacements;  // options and values; "*" or empty: the given values
-  std::string reason;                                             // why, or what to do instead
+  std::string reason;                                             // why, or a remedy
 };
 
 // A row of the table: former_option(FormerKind::renamed, "--old *", "--new *", "it says more"). A second option in
@@ -52,9 +52,9 @@ struct CurrentOptions {
   std::vector<OptionText> settings;  // those that were given, where no row speaks of them
   std::string notice;                // which option stands for which, and why; empty: nothing was renamed
 };
-// `given`: what is given together with it, itself included. Where several former options are one value now, as a model
-// and its parameters, one of them gets all of it, and the others nothing. Throws Error(kind, place, ...) for options
-// and values that are refused.
+// `given`: the options that are given with it, itself included. Where several former options are one value now, as a
+// model and its parameters, one of them gets all of it, and the others nothing. Throws Error(kind, place, ...) for
+// options and values that are refused.
 CurrentOptions current_options(const OptionText& option, const std::vector<OptionText>& given, ErrorKind kind,
                                const std::string& place, const std::vector<FormerOption>& table = former_options());
 

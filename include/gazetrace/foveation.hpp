@@ -21,7 +21,7 @@ namespace gazetrace {
 enum class SampleUnit { per_block, per_pixel };
 // How the eccentricity at which a region ends becomes a border. cone: by the angle between rays, which is exact off the
 // axis, too. disc, disc_by_radius: the paper's eq. (1), r = 2 d R tan(a/2) / S pixels about the gaze point. It does not
-// say what a is: the angle from one side of the region to the other, so that r is a diameter (disc), or the
+// define a: the angle from one side of the region to the other, so that r is a diameter (disc), or the
 // eccentricity itself, so that r is a radius (disc_by_radius).
 enum class RegionShape { cone, disc, disc_by_radius };
 
@@ -50,7 +50,7 @@ struct AdaptiveSampling {
       .looks_first = true};
 };
 
-// What each of them is like stands in its kTraits. DensitySampling is in density.hpp.
+// Its kTraits describe each of them. DensitySampling is in density.hpp.
 using Sampling = std::variant<RegionSampling, UniformSampling, DensitySampling, AdaptiveSampling>;
 
 SamplingTraits traits_of(const Sampling& sampling);  // as it is: a density may follow a picture
@@ -73,7 +73,7 @@ std::string picture_files_of(const Sampling& sampling);
 
 // "uniform", "regions", "regions:shape=disc,unit=pixel", "density", "adaptive". Throws Error(usage).
 Sampling parse_sampling(std::string_view text, const std::string& place = "`sampling`");
-// Its text, without what regions and densities hold beside it: shapes and units that are not the usual ones are told.
+// Its text, with unusual shapes and units, but without other values of regions and densities.
 std::string to_string(const Sampling& sampling);
 
 // A quality from which the number of samples follows. At most one of the members is given; it takes the place of `spp`.
@@ -98,7 +98,7 @@ struct FoveationSettings {
   // whole frame.
   double min_spp = 0.0625, max_spp = 65536;
   // Blocks of density models have a side of 1 to max_block_px pixels, a power of two; the smallest one that expects
-  // this many samples is taken. 8 is what the paper gives a peripheral block. Where the density is 1, a block is one
+  // this many samples is taken. 8 is the paper's number for a peripheral block. Where the density is 1, a block is one
   // pixel.
   double block_samples = 8;
   int max_block_px = kDefaultMaxBlockPx;
@@ -112,11 +112,11 @@ struct FoveationSettings {
   // samples a pixel, is their full rate.
 };
 
-// What a map depends on besides settings, view and gaze.
+// The inputs of a map besides settings, view and gaze.
 struct MapContext {
   std::uint64_t seed = 0;  // seed and frame decide which of the sites that expect a fraction of a sample round up
   std::int32_t frame = 0;
-  // What models that follow a picture follow: samples a pixel, or relative rates where `spp` is given. Of any size,
+  // The picture of models that follow one: samples a pixel, or relative rates where `spp` is given. Of any size,
   // stretched over the frame; see check_density_picture().
   const ImageGray* density = nullptr;
   // Where `density` shows a part of a frame only: the largest value in all of it, so that blocks and the least density
@@ -153,7 +153,7 @@ struct MapRegion {
   std::uint64_t pixels = 0;
   std::uint64_t sites = 0;
   std::uint64_t samples = 0;  // traced: the sum over its sites
-  // The sum of tau / n^2 (per_block) or tau (per_pixel) over its pixels; with real-valued rates, what its sites expect.
+  // The sum of tau / n^2 (per_block) or tau (per_pixel) over its pixels; with real-valued rates, of expected samples.
   double nominal_samples = 0;
 };
 
@@ -189,7 +189,7 @@ struct SamplingMap {
 // side. Regions without pixels stay in the list.
 //
 // Real-valued rates are rounded to whole counts systematically along the sites: count_k = floor(C_k + u) -
-// floor(C_(k-1) + u), where C_k is the sum of what the first k sites expect and u is uniform, made from seed and frame.
+// floor(C_(k-1) + u), where C_k is the expected sum of the first k sites and u is uniform, made from seed and frame.
 // Each count is unbiased and within 1 of its expectation; the total is within 1 of the sum of expectations.
 SamplingMap make_sampling_map(const FoveationSettings& settings, const PlanarView& view,
                               const std::optional<Vec3d>& gaze_direction, const MapContext& context = {});

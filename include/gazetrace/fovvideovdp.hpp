@@ -40,7 +40,7 @@ ImageGray display_luminance(const ImageRgb& code, const DisplayPhotometry& photo
 ImageGray linear_luminance(const ImageRgb& light, double scale, double most_cd_m2 = 10000, double black_cd_m2 = 0,
                            int threads = 0);
 
-// The metric's own geometry: a flat display that the picture always *fills*, whatever its size in pixels. Its angles
+// The metric's own geometry: a flat display that the picture always *fills*, at any size in pixels. Its angles
 // are pairs (azimuth, elevation) with Euclidean distances between them, not angles between rays; use them for this
 // metric only. A picture that covers a part of a display is described as a display of the picture's size whose middle
 // is right_m and up_m off the perpendicular from the eye.
@@ -57,7 +57,7 @@ struct FovVideoVdpGeometry {
   [[nodiscard]] double magnification(const Vec2d& direction_deg) const;
 };
 FovVideoVdpGeometry fovvideovdp_geometry(const DisplayGeometry& display);
-// A display of the frame's own pixels, size and position, at a distance of 1 m: what the metric needs where a frame
+// A display of the frame's own pixels, size and position, at a distance of 1 m: the metric's input where a frame
 // covers a part of its display, since it takes a picture to fill it.
 FovVideoVdpGeometry fovvideovdp_geometry(const PlanarView& view);
 FovVideoVdpGeometry geometry_from_diagonal(int width_px, int height_px, double diagonal_inches, double distance_m);
@@ -80,7 +80,7 @@ struct FovVideoVdpSettings {
   int threads = 0;
 };
 
-// What one frame scores.
+// The scores of one frame.
 struct FovVideoVdpFrame {
   std::vector<double> sustained, transient;  // Q of each spatial band, finest first; transient is empty for stills
   double q = 0;   // pooled over bands and channels; the Q of a sequence is the mean over its frames

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a frame has beside its picture where that is asked for: mattes, motion, places and light in groups.
+// Layers of a frame beside its picture, on request: mattes, motion, positions and light passes.
 #pragma once
 
 #include <memory>
@@ -42,7 +42,7 @@ struct FrameLayers {
   ImageGray alpha;
   MotionLayers motion;  // images are empty where they were not asked for
   // One for each LightGroup, or none. Under the filters none and linear, whose weights do not depend
-  // on the light, each is what the filter makes of the group's own samples. Under other filters, and where frames are
+  // on the light, each is the group's own samples, filtered. Under other filters, and where frames are
   // accumulated, a group is the picture itself times the group's share of the light, as the
   // filter `linear` (or, in single pixels, the samples' mean) finds it in the frame's own samples. Both ways the layers
   // add up to the picture, apart from rounding.

@@ -30,11 +30,11 @@ struct FrameRates {
 
 struct FrameSettings {
   FoveationSettings foveation;
-  TraceSettings trace;                    // what the filter needs is added to it: `surfaces`, `halves`
+  TraceSettings trace;                    // the filter's needs are added to it: `surfaces`, `halves`
   ReconstructionSettings reconstruction;  // its filter must be named; choose_filter() helps
   AccumulateSettings accumulate;
   ExposureSettings exposure;
-  // What a pilot must know of how frames are watched: with the frame's view, what its noise looks like.
+  // The viewing conditions that a pilot needs: with the frame's view, the look of its noise.
   double frames_per_second = 0;  // of the clip that the frame belongs to; 0: a still
   // Where it is given: the rates of a frame, in place of the file and of the pilot of its sampling.
   std::function<FrameRates(const FrameRequest& request)> rates_of;
@@ -97,7 +97,7 @@ struct TrainedField {
   std::shared_ptr<const GuidingField> field;
 };
 
-// A frame of a window: its samples, and what its pixels see.
+// A frame of a window: its samples, and the surfaces that its pixels see.
 struct WindowFrame {
   FrameRequest request;
   TracedFrame traced;
@@ -113,9 +113,9 @@ class FrameRenderer {
 
   [[nodiscard]] const FrameSettings& settings() const { return settings_; }
 
-  // map -> trace -> guides, where the filter needs them -> reconstruct -> exposure.
-  // A function of its arguments: a frame has the same bits alone and in a sequence. No other frame is read, whatever
-  // AccumulateSettings say.
+  // map -> trace -> feature buffers, where the filter needs them -> reconstruct -> exposure.
+  // A function of its arguments: a frame has the same bits alone and in a sequence. No other frame is read, with any
+  // AccumulateSettings.
   [[nodiscard]] RenderedFrame render(const FrameRequest& request) const;
   // With `known`, which saves time and changes no picture. It begins empty, and is then that of this frame.
   [[nodiscard]] RenderedFrame render(const FrameRequest& request, TrainedField& known) const;
@@ -136,7 +136,7 @@ class FrameRenderer {
   [[nodiscard]] RenderedFrame finish(const std::vector<const WindowFrame*>& window, std::size_t own) const;
 
  private:
-  // All stages after the samples. What the picture shows is in `shown`; counts and times are those of `own`.
+  // All stages after the samples. The picture's samples are in `shown`; counts and times are those of `own`.
   [[nodiscard]] RenderedFrame finish_with(const FrameRequest& request, const SamplingMap& map, const SparseFrame& shown,
                                           TracedFrame own) const;
   // Whether the frame would train the field of `known`: its own, or that of a frame at rest with it.
@@ -155,7 +155,7 @@ class FrameRenderer {
   std::shared_ptr<const std::vector<MatteTable>> tables_;  // of FrameSettings::layers; nullptr: there are no mattes
 };
 
-// What the sampling map of a frame depends on beside settings, view and gaze, pictures left out.
+// Inputs of the sampling map of a frame beside settings, view and gaze, pictures left out.
 MapContext map_context(const FrameRequest& request, std::uint64_t seed, int threads = 0);
 
 // The picture of picture_files_of() that a frame follows, checked by check_density_picture(); empty where there is

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Asking a gaze log where the eye was at a given time, and how the log's clock runs against the video's. gaze_read.hpp
-// reads logs, and gaze_log.hpp says what a log holds.
+// reads logs, and gaze_log.hpp describes a log.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ namespace gazetrace {
 // across blinks and lost rows. Where the movements of the eye are known, linear also interpolates only within a
 // fixation and takes the nearer row elsewhere. Where nearest or linear find no usable row, they hold the last one.
 enum class GazeInterpolation { hold, nearest, linear };
-// What a frame without usable gaze does. hold: it takes the last usable row, however old that is. Before the first
+// The gaze of a frame without usable gaze. hold: it takes the last usable row, however old that is. Before the first
 // usable row it takes the center, because gaze that is yet to come must not steer a frame.
 enum class NoGazePolicy { hold, center, uniform, error };
 
@@ -76,7 +76,7 @@ std::int64_t log_time_ns(const GazeLog& log, const GazeMapping& mapping, std::in
 // The other way: scale (t_log - t_event) + offset, to the nearest nanosecond, under the same errors.
 std::int64_t video_time_ns(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_log_ns);
 // Where there is no gaze and the policy is NoGazePolicy::error, throws Error(input) that names the time and the nearest
-// rows. `movements` says what the eye does at each sample (EyeEvents::labels); null where that is not known.
+// rows. `movements` is the eye's movement at each sample (EyeEvents::labels); null where it is unknown.
 GazeAtTime gaze_at(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_video_ns,
                    const std::vector<EyeMovement>* movements = nullptr);
 

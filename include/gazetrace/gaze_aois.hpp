@@ -42,8 +42,8 @@ struct Aoi {
 //   [[aoi]]
 //   name = "vase"
 //   node = "vase"                        # or material = "glaze", or both
-// `display` turns pixels into fractions. Throws Error(input) with file:line for what is no AOI, names that are given
-// twice, and pixels of a display that is not known.
+// `display` turns pixels into fractions. Throws Error(input) with file:line for anything but an AOI, names that are
+// given twice, and pixels of a display that is not known.
 std::vector<Aoi> load_aois(const std::string& path, const std::optional<DisplayGeometry>& display);
 
 // On the border counts as inside. Objects hold no place.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the numbers of a gaze log mean: units, origins, axes, marks of missing values, the eye, the display. Each is
+// The meaning of a gaze log's numbers: units, origins, axes, marks of missing values, the eye, the display. Each is
 // kept with the evidence from which it was concluded. `interpret` (gaze_raw.hpp) turns the numbers of a file into a
 // gaze log under such conventions. Where one of them is in doubt, the same numbers can be read again under another.
 #pragma once
@@ -23,7 +23,7 @@ enum class GazeKind : std::uint8_t { screen, direction, scene_camera };
 enum class GazeValidity : std::uint8_t { ok, low_confidence, blink, lost, off_screen, interpolated };
 enum class Eye : std::uint8_t { left, right, cyclopean };
 
-// What a log was recorded with. The constants of a method are published for one of the two, and are never applied to
+// The kind of recording device. The constants of a method are published for one of the two, and are never applied to
 // data of the other.
 enum class GazeDevice : std::uint8_t { desktop, head_mounted };
 
@@ -52,7 +52,7 @@ std::string_view to_string(PositionUnit unit);
 std::string_view to_string(PositionOrigin origin);
 std::string_view to_string(GazeAxes axes);
 
-// What is done with stamps that do not grow: refused; sorted, where the last of equal ones is kept; equal ones in pairs
+// Treatment of stamps that do not grow: refused; sorted, where the last of equal ones is kept; equal ones in pairs
 // stand half a step apart; a counter that overflowed goes on.
 enum class UnorderedPolicy { error, sort, pairs, unwrap };
 
@@ -66,7 +66,7 @@ enum class UnorderedPolicy { error, sort, pairs, unwrap };
 //              them, which is interpolated over gaps of up to 75 ms and a running mean over longer ones
 enum class EyeChoice { automatic, left, right, mean };
 
-// What a conclusion was drawn from, the most trusted first. Conclusions from statistics are guesses.
+// The source of a conclusion, the most trusted first. Conclusions from statistics are guesses.
 enum class Evidence : std::uint8_t { option, sidecar, header, format, statistics };
 std::string_view to_string(Evidence evidence);
 
@@ -74,7 +74,7 @@ std::string_view to_string(Evidence evidence);
 // speak against.
 struct ReadingDoubt {
   std::string code;      // as GazeFinding::code
-  std::string what;      // the question, or what is wrong
+  std::string what;      // the question, or the fault
   std::string evidence;  // the figures
   std::string setting;   // the options that answer it, in back quotes
   bool is_open = true;   // nothing states it
@@ -85,7 +85,7 @@ template <class Value>
 struct Concluded {
   Value value{};
   Evidence evidence = Evidence::format;
-  std::string detail = {};  // where it is stated, or what the numbers look like
+  std::string detail = {};  // where it is stated, or the look of the numbers
 };
 
 // A camera with OpenCV's rational distortion model. `k` holds k1 k2 p1 p2 k3 k4 k5 k6; the focal lengths and the
@@ -95,7 +95,7 @@ struct SceneLens {
   std::array<double, 8> k{};
 };
 
-// What the numbers of a place are.
+// The kind of a place's numbers.
 enum class PlaceForm : std::uint8_t {
   position,  // x, y on a display or on a picture; or two angles, each measured along its axis of a flat display
   vector,    // x, y, z of a direction
@@ -123,7 +123,7 @@ struct Conventions {
   Concluded<GazeAxes> axes{GazeAxes::automatic};
   std::optional<Concluded<bool>> x_is_turned;  // whether the x axis had been turned when the log was written
 
-  // What the user says is wrong with the log.
+  // Faults of the log that the user states.
   bool swap_xy = false, flip_x = false, flip_y = false;
   // The number that stands for missing places, in the file's unit. -32768, and magnitudes from 1e7 on, always do.
   std::optional<double> missing_value;
@@ -145,7 +145,7 @@ struct Conventions {
   };
   std::optional<Concluded<Taken>> eye_taken;
 
-  Warnings warnings;  // about what was overruled, and what had to be guessed
+  Warnings warnings;  // about overruled statements and guesses
   std::vector<ReadingDoubt> doubts;
 };
 

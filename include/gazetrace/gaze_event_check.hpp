@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether detected events can be those of an eye. A method that does not suit the noise or the rate of a log gives
-// events all the same; here they are held against what is published of eye movements.
+// events all the same; here they are compared with published eye movements.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ EventNoise measure_event_noise(const GazeLog& log, const EventSettings& settings
 
 struct EventDoubt {
   std::string code;  // "noise", "few-fixations", "short-fixations", "many-saccades", "long-saccades", "main-sequence"
-  std::string what;  // one sentence with the figures and what is published
+  std::string what;  // one sentence with the figures and the published ones
 };
 
 // Empty where nothing speaks against the events. Sources of the limits:
@@ -38,11 +38,11 @@ std::vector<EventDoubt> doubt_events(const GazeLog& log, const EyeEvents& events
 // events_as_json (gaze_events.hpp) with "doubts", a list of codes and sentences; an empty list: none was found.
 std::string events_as_json(const EyeEvents& events, const GazeLog& log, const std::vector<EventDoubt>& doubts);
 
-// What would suit the log better, found by trying: presets for the same device and steps of processing, as options with
-// what they find, such as "`method` idt (47 fixations, 46 saccades)". Only those that leave no doubt; empty: none does.
+// Better methods for the log, found by trying: presets for the same device and steps of processing, as options with
+// their results, such as "`method` idt (47 fixations, 46 saccades)". Only those that leave no doubt; empty: none does.
 std::vector<std::string> better_event_methods(const GazeLog& log, const EyeEvents& events);
 
-// A sentence for each doubt and, where there is one, another that says what to do. Options stand in back quotes.
+// A sentence for each doubt and, where there is one, another with a remedy. Options stand in back quotes.
 std::vector<std::string> doubts_in_words(const std::vector<EventDoubt>& doubts, const EyeEvents& events,
                                          const GazeLog& log);
 

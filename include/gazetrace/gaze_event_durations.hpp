@@ -8,7 +8,7 @@
 
 namespace gazetrace {
 
-// As `duration_ms` of the tables says it: what the tracker states, else as many steps of the clock as the event has
+// As `duration_ms` in the tables: the tracker's value, else as many steps of the clock as the event has
 // samples, so that one sample does not last 0 ms. `step_ns` is the log's.
 std::int64_t event_duration_ns(const EyeEvent& event, std::int64_t step_ns);
 

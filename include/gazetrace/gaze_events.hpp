@@ -18,9 +18,9 @@
 
 namespace gazetrace {
 
-// What an eye does at a time. Only ivdt finds pursuit, and only ek finds microsaccades; the parts of a fixation before
-// and after a microsaccade are events of their own. unclassified: the eye was seen, but its movement is none of the
-// others (fixations too short to be kept, implausible speeds).
+// The movement of an eye at a time. Only ivdt finds pursuit, and only ek finds microsaccades; the parts of a fixation
+// before and after a microsaccade are events of their own. unclassified: the eye was seen, but its movement is none of
+// the others (fixations too short to be kept, implausible speeds).
 enum class EyeMovement : std::uint8_t { fixation, saccade, pursuit, blink, lost, unclassified, microsaccade };
 std::string_view to_string(EyeMovement movement);
 
@@ -74,7 +74,7 @@ struct EventSettings {
   double noise_factor = 6;
   double max_microsaccade_deg = 1;
   // All methods: a loss of this length that the log does not explain is taken for a blink (pymovements, after Nystrom
-  // et al. 2024). Both 0: only what the log calls a blink is one.
+  // et al. 2024). Both 0: only the log's own blinks count.
   std::int64_t min_blink_ns = 50'000'000, max_blink_ns = 500'000'000;
 };
 
@@ -87,7 +87,7 @@ struct EventPreset {
 const std::vector<EventPreset>& event_presets();
 const EventPreset& event_preset(std::string_view name);  // throws Error(usage) with the known names
 // "ivt" for gaze on a screen, "ivt-hmd" for directions with a head pose, "ivt-attention" for those without.
-// `device` is what the user says that the log was recorded on; empty where nothing was said.
+// `device` is the recording device as the user states it; empty if not stated.
 const EventPreset& default_event_preset(const GazeLog& log, std::optional<GazeDevice> device = std::nullopt);
 // Directions from a head count as head-mounted and gaze on a screen as desktop, unless the log's reader knows better
 // (as for GazeBase).
@@ -105,7 +105,7 @@ struct EyeEvent {
   // to the right, 90 up). For a fixation: the peak speed, and dispersion_deg, the root mean square of the angle to its
   // mean direction. NaN where a value does not apply.
   double amplitude_deg = 0, peak_velocity_deg_s = 0, mean_velocity_deg_s = 0, angle_deg = 0, dispersion_deg = 0;
-  // Of an event that the log itself states, what the tracker says of it: begin and end may lie between samples.
+  // Of an event that the log itself states, the tracker's values: begin and end may lie between samples.
   struct Stated {
     std::int64_t begin_ns = 0, end_ns = 0;
     std::optional<std::int64_t> duration_ns;
@@ -127,13 +127,13 @@ struct EyeEvents {
 // Takes linear time. Throws the errors of gaze_directions, and Error(usage) for an unknown method or constants that are
 // out of range.
 EyeEvents detect_events(const GazeLog& log, const EventSettings& settings);
-// Throws Error(input) where the preset is for the other kind of device. `device` is what the user says that the log was
-// recorded on; where it is empty, `recorded_device` decides.
+// Throws Error(input) where the preset is for the other kind of device. `device` is the device of the recording
+// as the user states it; where it is empty, `recorded_device` decides.
 EyeEvents detect_events(const GazeLog& log, const EventPreset& preset, std::optional<GazeDevice> device = std::nullopt);
 // The log of one eye alone, out of a log of both. Error(input) where the log has not both eyes.
 GazeLog one_eye(const GazeLog& log, Eye eye);
 // Those of the left eye, of which only the saccades and microsaccades stay that overlap one of the right eye (the
-// binocular condition of Engbert & Kliegl 2003); what else ek found is noise of one eye and becomes part of a fixation.
+// binocular condition of Engbert & Kliegl 2003); ek's other findings are noise of one eye and join a fixation.
 EyeEvents binocular_events(const GazeLog& log, const EventPreset& preset,
                            std::optional<GazeDevice> device = std::nullopt);
 // The events that the log itself states for the eye it has been read for (EyeLink's EFIX and ESACC, Tobii's columns,
@@ -142,8 +142,8 @@ EyeEvents binocular_events(const GazeLog& log, const EventPreset& preset,
 EyeEvents events_of_log(const GazeLog& log);
 
 // Tab-separated values with one event in each row: movement, onset_ns, offset_ns, duration_ms, first_row, last_row,
-// amplitude_deg, ... n samples last n steps of the clock. Of events that the log states, these columns hold what the
-// tracker says (n/a where it says nothing), and our own measures stand in columns named measured_... and after the
+// amplitude_deg, ... n samples last n steps of the clock. For events that the log states, these columns have the
+// tracker's values (n/a where it has none), and our own measures are in columns named measured_... and after the
 // velocity filter and its window, such as two_point_20ms_peak_velocity_deg_s.
 std::string events_as_tsv(const EyeEvents& events, const GazeLog& log);
 std::string events_as_json(const EyeEvents& events, const GazeLog& log);

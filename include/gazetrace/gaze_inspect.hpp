@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The log doctor reports how good a gaze log is, what is suspicious in it, what evidence that rests on, and which
+// The log doctor reports how good a gaze log is, its suspicious points with their evidence, and which
 // options mend it. Nothing here changes a log.
 #pragma once
 
@@ -18,7 +18,7 @@
 namespace gazetrace {
 
 // How many samples can be used. The time of a loss is the time from one usable sample to the next, less one median
-// step; at either end of a section it is the time to the section's first or last sample. A section is what was recorded
+// step; at either end of a section it is the time to the section's first or last sample. A section is a part recorded
 // without a pause, and pauses are no losses.
 struct GazeLoss {
   std::size_t samples = 0, usable = 0;
@@ -94,13 +94,13 @@ struct GazeFinding {
              // "missing-value", "decimal-commas", "y-flip", "x-flip", "swapped-axes", "frozen", "disparity", ...
   std::string what;
   std::string evidence;
-  std::string setting;   // what mends it, such as "`flip-y`" or "`unit` px"; empty: no option does
+  std::string setting;   // the repair, such as "`flip-y`" or "`unit` px"; empty: no option does
   bool is_open = false;  // a question that `setting` answers: until then only an inspection reads the file
 };
 
 struct GazeInspection {
-  // What the log says about itself, see GazeLog. Anything that identifies a person is left out unless the options keep
-  // it.
+  // The log's statements about itself, see GazeLog. Anything that identifies a person is left out unless the options
+  // keep it.
   std::string source, format, clock, pupil_unit;
   double format_confidence = 1;
   GazeKind kind = GazeKind::screen;
@@ -131,13 +131,13 @@ struct GazeInspection {
   std::vector<std::string> settings;  // those that mend findings, in the order in which to give them
 };
 
-// Names, participants, serial numbers and times of day are left out unless `keep_ids` is set. `display` completes what
-// the log states about its display.
+// Names, participants, serial numbers and times of day are left out unless `keep_ids` is set. `display` completes
+// the log's display.
 struct GazeInspectOptions {
   std::optional<DisplayGeometry> display;
   bool keep_ids = false;
 };
-// What can be told from a log alone.
+// Findings from a log alone.
 GazeInspection inspect_gaze(const GazeLog& log, const GazeInspectOptions& options);
 
 // A log together with the raw numbers of its file, which an inspection can interpret again under other conventions.
@@ -148,7 +148,7 @@ struct GazeUnderInspection {
   bool is_sorted_by_option = false;  // if false, rows that are out of order or repeated are findings
   GazeLog log;
 };
-// Broken logs are mended where an option can mend them, and what was wrong becomes a finding. Of several recordings the
+// Broken logs are mended where an option can mend them, and each fault becomes a finding. Of several recordings the
 // first one is taken. Gaze on a scene camera's picture is accepted. Display sizes that nobody states are guessed, as
 // `GazeReadOptions::guess_display` says.
 GazeUnderInspection load_for_inspection(const std::string& path, GazeReadOptions read);

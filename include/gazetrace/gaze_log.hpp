@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a gaze log holds once it is read: its samples, what is known about each eye and the head, and the evidence for
+// A gaze log after reading: its samples, the data of each eye and of the head, and the evidence for
 // how the file was interpreted.
 //
 // Time is int64 nanoseconds on the log's own clock, never a float. Gaze on a screen is a fraction of the *display*:
@@ -92,7 +92,7 @@ struct GazeEvent {
   std::int64_t begin_ns = 0, end_ns = 0;
   std::string text;
   std::int64_t row = 0;
-  // What the tracker states of it besides, in its own reckoning: a duration may count the last sample's own time, and a
+  // Other values of the tracker, in its own reckoning: a duration may count the last sample's own time, and a
   // velocity has the tracker's filter behind it.
   std::optional<std::int64_t> stated_duration_ns = std::nullopt;
   std::optional<double> stated_amplitude_deg = std::nullopt, stated_peak_velocity_deg_s = std::nullopt;
@@ -145,7 +145,7 @@ struct GazeWitness {
 // A part of a recording, see gaze_trials.hpp. Both ends are included.
 struct GazeTrial {
   std::int32_t number = 1;  // from 1, in the order of time
-  std::string name;         // what the recording or the table calls it; may be empty
+  std::string name;         // its name in the recording or the table; may be empty
   std::int64_t begin_ns = 0, end_ns = 0;
   std::int32_t block = 0;  // number of the block of the recording that it begins in, from 1; 0: in none
 };
@@ -157,7 +157,7 @@ struct GazeLog {
   std::string source;            // the path as given
   std::string format;            // a name of `gaze_formats()`
   double format_confidence = 1;  // 0..1, how sure the sniffing was; 1 where the format was named
-  std::string clock;             // what the log says about its clock; may be empty
+  std::string clock;             // the log's words about its clock; may be empty
   std::string pupil_unit;        // "mm", "px", "area", ...; empty: not stated
   // Geometry of the recording where the log states it (any zero field: not stated).
   std::optional<DisplayGeometry> recording_geometry;

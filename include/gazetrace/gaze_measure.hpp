@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a perception lab looks at before it uses a recording: the quality of the data, and the eye movements, as numbers
+// The first measurements of a recording in a perception lab: the quality of the data, and the eye movements, as numbers
 // and as tables.
 #pragma once
 
@@ -70,7 +70,7 @@ struct GazeMeasurements {
   // vertical_deg, the disparity of the places (left minus right, each seen from the middle between the eyes);
   // vergence_deg and distance_mm, the angle between the lines of sight and where they meet (gaze_vergence.hpp).
   std::vector<GazeTable> tables;
-  std::string json;  // all numbers, and what a drawing has to know of the tables
+  std::string json;  // all numbers, and the facts about the tables that a drawing needs
   Warnings warnings;
 };
 // Throws the errors of detect_events.

@@ -26,10 +26,10 @@ enum class Stimulus : std::uint8_t { replayed, recorded };
 struct GazeUncertainty {
   double accuracy_deg = 0, precision_deg = 0;
 };
-// What the log says about it: the mean error of its validations, and the root mean square of the scatter within
+// The log's own measures: the mean error of its validations, and the root mean square of the scatter within
 // fixations. NaN where the log does not say.
 GazeUncertainty uncertainty_of(const GazeLog& log);
-// `stated` and, where that is NaN, what the log says.
+// `stated` and, where that is NaN, the log's.
 GazeUncertainty known_uncertainty(const GazeUncertainty& stated, const GazeLog& log);
 
 // Directions around a gaze, equally likely each. The gaze is off by a normal distribution around it: the tracker's
@@ -52,7 +52,7 @@ struct SceneHeatSettings {
 };
 struct SceneHeat {
   std::int32_t frame = 1;
-  int width_px = 0, height_px = 0;  // 480 wide, whatever the frame
+  int width_px = 0, height_px = 0;  // 480 wide for any frame
   std::vector<double> values;       // row by row from the upper left corner, in seconds per square metre
   std::vector<std::uint8_t> greys;  // of the surfaces, light where they are seen at a right angle
   double seconds = 0;               // of gaze on the surfaces of the scene, seen or hidden
@@ -69,7 +69,7 @@ struct GazeObjectsSettings {
   bool keep_hits = false;  // FrameObjects::hits
 };
 
-// What carries a name: a node of the glTF, as far as it has one material. Instances of one node are one object, and so
+// A named object: a node of the glTF, as far as it has one material. Instances of one node are one object, and so
 // are nodes of one name.
 struct SceneObject {
   std::string node, material;  // both empty: nothing was hit, the environment

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Outlines of a scene's objects in every frame, for tools that know areas of interest and no scenes: what is seen of
-// each object, with holes and behind what hides it, exact to the pixel.
+// Outlines of a scene's objects in every frame, for tools that know areas of interest but not scenes: the visible part
+// of each object, with holes and behind others, exact to the pixel.
 #pragma once
 
 #include <cstddef>
@@ -54,15 +54,15 @@ struct SceneOutlines {
   std::vector<FrameOutlines> frames;
 };
 
-// What the middle of each pixel sees first, by a pinhole in the middle of the frame's time, for all frames of a job. It
-// needs a scene and a camera, and no gaze. Throws Error as resolve() does.
+// The object that the middle of each pixel sees first, by a pinhole in the middle of the frame's time, for all frames
+// of a job. It needs a scene and a camera, and no gaze. Throws Error as resolve() does.
 struct OutlinesOfJob {
   SceneOutlines outlines;
   Warnings warnings;
 };
 OutlinesOfJob outlines_of_job(const Job& job);
 
-// docs/gaze.md says what is in it.
+// docs/gaze.md describes it.
 std::string outlines_as_json(const SceneOutlines& outlines);
 
 }  // namespace gazetrace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gaze is biometric, and a time of day tells whose it is. What is written shall carry neither times of day nor what an
-// experiment said of its participants, unless it was asked to be kept. This is the one place that says how it is
-// hidden.
+// Gaze is biometric, and a time of day tells whose it is. Files must contain neither times of day nor an
+// experiment's words on its participants, unless the user keeps them. This is the one place that hides
+// them.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace gazetrace {
 
 // Stamps that count from 1970 and fall into this century are times of day, which identify a session.
 bool is_wall_clock(const GazeLog& log);
-// Counts all stamps of a log from its first sample on; returns what was taken off. Mapping to video time only knows
-// differences, so nothing else changes.
+// Counts all stamps of a log from its first sample on; returns the time that was taken off. Mapping to video time only
+// knows differences, so nothing else changes.
 std::int64_t count_from_first_sample(GazeLog& log);
 // Dates and times of day in a text become "(date)".
 std::string without_dates(const std::string& text);
@@ -25,7 +25,7 @@ std::string without_stamps(const std::string& text);
 
 struct LogWithoutTimesOfDay {
   GazeLog log;
-  // What was taken off every stamp; empty where the stamps are no times of day and stay as they are.
+  // The time taken off every stamp; empty where the stamps are no times of day and stay as they are.
   std::optional<std::int64_t> taken_off_ns;
 };
 // The log with its stamps counted from the first sample where they are times of day, those of rows out of order, too,
@@ -33,8 +33,8 @@ struct LogWithoutTimesOfDay {
 LogWithoutTimesOfDay without_times_of_day(GazeLog log);
 
 // For copies of a log, whose stamps stay, because other programs hold them against recordings of the same clock: takes
-// dates out of what is said of the clock and out of the warnings, and leaves out the messages of the experiment, into
-// which participants, serial numbers and dates are written. Returns what to tell of that.
+// dates out of the words on the clock and out of the warnings, and leaves out the messages of the experiment, into
+// which participants, serial numbers and dates are written. Returns a message about that.
 Warnings leave_out_identities(GazeLog& log);
 
 }  // namespace gazetrace

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The single steps from a file to a gaze log: `read_raw_gaze` reads the numbers as they are written,
-// `conclude_conventions` decides what they mean, and `interpret` makes the log from both. `load_gaze_log`
+// `conclude_conventions` decides their meaning, and `interpret` makes the log from both. `load_gaze_log`
 // (gaze_read.hpp) does the three in turn. A raw gaze is never changed, so that it can be interpreted again under other
-// conventions to see what log results from them.
+// conventions and compares the resulting logs.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ struct RawFault {
   std::string place;  // file:line
   std::string problem;
   std::string remedy;
-  std::string setting;  // the option under which reading does what was done here, in back quotes; empty: there is none
+  std::string setting;  // the option by which reading repeats this step, in back quotes; empty: there is none
   std::string found;    // the same problem as a finding of an inspection
 };
 
@@ -62,7 +62,7 @@ struct RawGaze {
   // With the signs that the format defines; `interpret` turns them together with the gaze.
   std::vector<GazeWitness> witnesses;
 
-  // What the format, the header, a sidecar or the named columns state about the numbers. `automatic`: none of them
+  // Statements of the format, the header, a sidecar or the named columns about the numbers. `automatic`: none of them
   // does.
   Conventions declared;
   // Where the display's corner moves between the rows of the file, in the order of the rows. Before the first of these
@@ -73,7 +73,7 @@ struct RawGaze {
   std::vector<GazeRecording> recordings;
   std::vector<RecordingFromLine> recording_lines;
   std::size_t recording = 0;  // as GazeLog::recording: the other recordings' rows have been left out
-  // Degrees that become directions grow upwards, whatever origin was stated or guessed for them. If this is false, they
+  // Degrees that become directions grow upwards, for any stated or guessed origin. If this is false, they
   // grow downwards where they count from the top left.
   bool directions_grow_up = false;
   std::int64_t clock_restarts_row = 0;  // the first row from which on the clock counts anew; 0: there is none
@@ -82,10 +82,10 @@ struct RawGaze {
   bool is_own_table = false;    // a table that no format defines: nothing about its numbers is certain by itself
   bool are_points = false;      // directions are written as points in space, of any length
   std::string place;            // file:line where `declared` is stated, for messages
-  std::string way_out;          // for gaze on a scene camera's picture: what could be read instead
-  std::vector<GazeFact> notes;  // what else the file states, in words
+  std::string way_out;          // for gaze on a scene camera's picture: another file to read
+  std::vector<GazeFact> notes;  // other statements of the file, in words
   std::vector<RawFault> faults;
-  Warnings damages;  // what shows that the file is not whole; no option mends it
+  Warnings damages;  // signs that the file is not whole; no option repairs it
   Warnings warnings;
 };
 
@@ -95,8 +95,8 @@ struct RawGaze {
 // no log, for broken rows, and for columns, units or recordings that are not known.
 RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options);
 
-// What `options` state replaces what the log declares, with a warning. What neither states is taken from the numbers.
-// The result's `doubts` say what these leave open and what they speak against: every command asks them. Throws
+// `options` override the log's statements, with a warning. Conventions that neither states are taken from the numbers.
+// The result's `doubts` list open and contradicted readings: every command checks them. Throws
 // Error(input) for gaze on a scene camera's picture, unless `options.frame` asks for it.
 Conventions conclude_conventions(const RawGaze& raw, const GazeReadOptions& options);
 

@@ -29,7 +29,7 @@ struct RawSample {
   std::int64_t row = 0;     // 1-based line (binary formats: record) in the source file
 };
 
-// Rows in the order of the file. They are read by value, and appended at the end; what has been appended keeps its
+// Rows in the order of the file. They are read by value, and appended at the end; appended rows keep their
 // values, but for its validity.
 class RawRows {
  public:
@@ -69,7 +69,7 @@ class RawRows {
  private:
   static constexpr std::size_t kRowsOfBlock = 4096;
 
-  // Values of a block as what they are above its least one, in 0, 1, 2, 4 or 8 bytes each.
+  // Values of a block less its least one, in 0, 1, 2, 4 or 8 bytes each.
   class Integers {
    public:
     void pack(const std::array<std::int64_t, kRowsOfBlock>& values);

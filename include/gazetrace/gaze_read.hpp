@@ -16,7 +16,7 @@
 
 namespace gazetrace {
 
-// The names of an eye's columns in a table: its position or direction, and what else is recorded of it.
+// The names of an eye's columns in a table: its position or direction, and other data of it.
 struct EyeColumns {
   std::string x, y, z;
   std::string validity, confidence, pupil;
@@ -25,7 +25,7 @@ struct EyeColumns {
   bool operator==(const EyeColumns&) const = default;
 };
 
-// What the user declares about the columns of a CSV or TSV whose header does not tell. A column without a name here is
+// The user's description of the columns of a CSV or TSV whose header does not tell. A column without a name here is
 // found by its header. In every format that is a table, the names of time, x, y and z given here replace its own.
 struct GazeColumns {
   std::string time, x, y, z, validity, confidence, pupil, eye;
@@ -76,9 +76,9 @@ struct GazeReadOptions {
   // Converts pixels, lengths and degrees to fractions of the display. Logs that hold fractions do not need it.
   std::optional<DisplayGeometry> display;
   // Where the eye's perpendicular meets the display, as the user gave it; empty: `display`'s where that is not its
-  // center, else what the log states.
+  // center, else the log's.
   std::optional<Vec2d> eye_cm;
-  // Stands in for what neither the log nor `display` states: the screen on which the pictures will be seen.
+  // Used where neither the log nor `display` states it: the screen on which the pictures will be seen.
   std::optional<DisplayGeometry> fallback_display;
   UnorderedPolicy unordered = UnorderedPolicy::error;
   EyeChoice eye = EyeChoice::automatic;
@@ -93,23 +93,23 @@ struct GazeReadOptions {
   bool swap_xy = false;  // x and y are exchanged in the log
   bool flip_x = false;   // left and right are exchanged: u becomes 1 - u, direction x becomes -x
   bool flip_y = false;   // top and bottom likewise
-  // What nothing states but the numbers decide against all rivals is taken; otherwise it is refused like what they
-  // leave open.
+  // Accepts conventions that only the numbers decide, against all rivals; otherwise they are refused like
+  // open ones.
   bool accepts_inferred = false;
   // For inspecting a log, never for rendering. Where pixels need the size of a display that is stated nowhere, a common
   // size that holds them is assumed, with a warning and with `Evidence::statistics`; degrees then become directions.
   bool guess_display = false;
-  // What belongs to a BIDS recording, its sidecars and those of other eyes, may be symbolic links that lead out of its
+  // Files of a BIDS recording, its sidecars and those of other eyes, may be symbolic links that lead out of its
   // data set. Otherwise the links are followed, and must end in it.
   bool allow_outside = false;
   std::uint64_t most_unpacked_bytes = std::numeric_limits<std::uint64_t>::max();  // that a packed log may become
 };
 
-// Returns `stated`, with what it leaves open taken from `by`: the pixels, the size, or the distance together with the
+// Returns `stated`, with missing values taken from `by`: the pixels, the size, or the distance together with the
 // eye's place.
 DisplayGeometry completed_geometry(DisplayGeometry stated, const DisplayGeometry& by);
 
-// What a format's reader was tested with.
+// The kind of files that a format's reader was tested with.
 enum class FormatProof : std::uint8_t { recording, synthetic };
 struct GazeFormatInfo {
   std::string name;
@@ -124,7 +124,7 @@ std::vector<GazeFormatInfo> gaze_formats();
 // others), for columns and units that are not known, and for gaze on a scene camera's picture.
 GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options);
 
-// The decisions about a log's numbers as a table, with what each rests on and the figures of what else they could be.
+// The decisions about a log's numbers as a table, with the reason of each and the figures of rival readings.
 std::string decisions_in_words(const std::vector<GazeFact>& facts);
 
 }  // namespace gazetrace

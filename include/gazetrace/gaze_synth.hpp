@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Synthetic gaze logs whose true eye movements are known. They test whatever reads, filters or classifies gaze.
+// Synthetic gaze logs whose true eye movements are known. They test readers, filters and classifiers of gaze.
 #pragma once
 
 #include <cstdint>

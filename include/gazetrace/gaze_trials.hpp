@@ -28,16 +28,16 @@ struct TrialRules {
 };
 
 // Makes the trials that the rules find events of the log, in place of those that it has; nothing without a rule. Only
-// those that hold a sample count. Error(input) where there is none, with what the log has instead; Error(usage) for
-// rules that contradict each other; Error(input) with file:line for a broken table.
+// those that hold a sample count. Error(input) where there is none, with a list of other possible marks; Error(usage)
+// for rules that contradict each other; Error(input) with file:line for a broken table.
 void name_trials(GazeLog& log, const TrialRules& rules);
 // The log's trials, or its blocks, in the order of time; only those that hold a sample. Error(input) where there is
 // none.
 std::vector<GazeTrial> find_trials(const GazeLog& log);
-// The one that `which` names, by number or name. Error(usage) with what there is.
+// The one that `which` names, by number or name. Error(usage) with a list of all.
 const GazeTrial& trial_by_name(const std::vector<GazeTrial>& trials, std::string_view which);
 
-// What the log holds between begin and end of the trial: samples, messages and events, which are cut at the ends.
+// The log's data between begin and end of the trial: samples, messages and events, which are cut at the ends.
 // Validations before it stay, since they say how good it is. Of the head's poses the nearest one on either side stays.
 GazeLog cut_to_trial(GazeLog log, const GazeTrial& trial);
 // The trial of it that `which` names; empty: the whole log.

@@ -11,9 +11,9 @@
 
 namespace gazetrace {
 
-// What the eyes do at one sample; NaN where it is not known.
+// Vergence of the eyes at one sample; NaN where it is unknown.
 struct Vergence {
-  // Azimuth of the left eye less that of the right, in degrees, in the plane of the eyes and of what they look at
+  // Azimuth of the left eye less that of the right, in degrees, in the plane of the eyes and of their target
   // (Helmholtz): the angle between lines of sight that meet, positive for eyes that converge, 0 for parallel ones.
   double horizontal_deg;
   // Elevation of the left eye less that of the right, in degrees: the error of the tracker, since eyes move up and down
@@ -39,7 +39,7 @@ struct VergenceOverTime {
 // Of a log of both eyes. Of *directions* the angles follow from the directions alone, and only the distance needs to
 // know how far the pupils are apart. Of places on a *screen* the eyes are half of the pupils' distance to the left and
 // to the right of where the screen's geometry has the eye, so that everything needs it, and the screen's size and
-// distance. Without both eyes, or without what is needed, `samples` is empty and `missing` says why. Error(usage) for a
+// distance. Without both eyes, or without needed data, `samples` is empty and `missing` says why. Error(usage) for a
 // pupil distance out of range.
 VergenceOverTime measure_vergence(const GazeLog& log, const VergenceSettings& settings);
 

@@ -20,8 +20,8 @@ void write_gaze_csv(const GazeLog& log, const std::string& path);
 
 // Writes the log as BIDS eye tracking: one file for each eye and one for the gaze that was made of both, with sidecars,
 // the log's events and the screen, but without the head's poses. `path` names it, as in
-// sub-01_task-view_physio.tsv.gz; a `recording-` in the name is replaced by eye1, eye2 and cyclopean. What is written
-// is read again bit by bit, as above. Error(usage) for a name that is none of BIDS, Error(input) for gaze on a scene
+// sub-01_task-view_physio.tsv.gz; a `recording-` in the name is replaced by eye1, eye2 and cyclopean. The files
+// are read again bit by bit, as above. Error(usage) for a name that is none of BIDS, Error(input) for gaze on a scene
 // camera's picture.
 //
 // The files of a conversion belong together. Their folder is held from the first look at it to the last change of it,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Guides: what the camera sees first, at full resolution, found with a ray or a few per pixel instead of whole paths.
-// They steer filters.
+// Feature buffers: first hits of the camera, at full resolution, found with a ray or a few per pixel instead of whole
+// paths. They steer filters.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace gazetrace {
 
-// What a camera ray hits.
+// The hit of a camera ray.
 enum class SurfaceKind : std::uint8_t {
   miss,     // nothing: the environment
   unlit,    // emits and reflects nothing (KHR_materials_unlit)
@@ -77,8 +77,8 @@ struct Guides {
   Image<SurfaceKind> kind;
   // GuideSettings::edge_rays rays for each pixel that an edge may cross: it differs from one of its four neighbours in
   // object, material or kind, or by more than 25 degrees in normal (bumps left out), or it is off the plane of two
-  // opposite ones. Pixels all of whose rays see what their centre sees are left out. In the order of the pixels. The
-  // images do not contain what these rays found.
+  // opposite ones. Pixels whose rays all see the surface of the centre are left out. In the order of the pixels. The
+  // images do not contain the hits of these rays.
   std::vector<EdgeRay> edge_rays;
   std::vector<EdgeSurface> edge_surfaces;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Headsets among the named displays, with what is published of them.
+// Headsets among the named displays, with their published data.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct Headset {
   std::string model;
   int width_px = 0, height_px = 0;  // of one eye's panel
   double pixels_per_degree = 0;
-  std::string density;  // what the pixels per degree are: "at the centre", "mean over the field", ...
+  std::string density;  // the kind of pixels per degree: "at the centre", "mean over the field", ...
   Vec2d field_deg{};    // horizontally and vertically; y is 0 where one angle alone is stated
   double rate_hz = 0;   // the highest
   double luminance_cd_m2 = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which files a scene consists of, and what they contain.
+// The files of a scene, and digests of their contents.
 #pragma once
 
 #include <map>

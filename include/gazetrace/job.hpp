@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A job is what one run is asked to do: its settings and, for each option that was given, who gave it. A job is a plain
+// A job describes one run: its settings and, for each option that was given, who gave it. A job is a plain
 // value; no file is loaded and nothing is checked against other files before resolve() (resolve.hpp).
 //
 // Order of precedence, from the strongest:

@@ -15,7 +15,7 @@ inline constexpr const char* kFarmHeading = "On many machines";
 const JobSchema& job_schema();
 
 // Parts of it that other commands have as well, under the same names.
-OptionSchema<GazeFileSettings> gaze_choice_schema();           // what is taken of a log
+OptionSchema<GazeFileSettings> gaze_choice_schema();           // the part of a log that is used
 OptionSchema<GazeFileSettings> gaze_import_schema();           // that, and how a log is read: the importer's alone
 OptionSchema<std::vector<std::string>> gaze_process_schema();  // the steps of processing
 OptionSchema<ScreenSettings> screen_schema();                  // where the viewer sat

@@ -24,7 +24,7 @@ struct ScreenSettings {
   std::optional<double> pixels_per_degree;
 };
 
-// Where the samples go, and what options say of samplings while another one is chosen.
+// Where the samples go, and the options of samplings that are not chosen.
 struct SamplingSettings : FoveationSettings {
   SamplingSettings() { sampling = DensitySampling(); }
   RegionSampling unused_regions;
@@ -34,7 +34,7 @@ struct SamplingSettings : FoveationSettings {
 struct GazeFileSettings {
   std::string path;
   GazeReadOptions read;
-  std::string columns_file;  // a column map; what `read` says overrides it
+  std::string columns_file;  // a column map; `read` overrides it
   std::optional<double> min_confidence;
   TrialRules trial_rules;
   std::string trial;  // the one that is taken, by number or name; empty: the whole recording
@@ -63,7 +63,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   bool camera_from_gaze = false;
   CameraReadOptions camera_read;
   std::optional<FrameRate> camera_fps;  // empty: that of the video
-  CameraPlacement camera_placement;     // `camera_up` says what z_up is
+  CameraPlacement camera_placement;     // `camera_up` sets z_up
   WorldUp camera_up = WorldUp::y;
   CameraExtrapolation camera_extrapolation = CameraExtrapolation::error;
   std::optional<Vec3d> eye, target;
@@ -128,7 +128,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   DurationNs grace{25'000'000'000};  // for the frame in hand, once a run is asked to stop
   std::optional<DurationNs> max_time;
 
-  // What the program says
+  // Messages of the program
   std::string progress = "auto";
   bool quiet = false;
 };

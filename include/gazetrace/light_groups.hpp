@@ -15,8 +15,8 @@ namespace gazetrace {
 
 // By the first surface that the camera sees. Its diffuse lobe is that of the base, reflected or transmitted; all other
 // lobes are specular: facets with their repeated scattering, refraction, clear coat and sheen. Where a direction could
-// come from several lobes, its light is divided by what each reflects of it. Direct light meets one surface on its way,
-// whether a light sample or a ray found it, and indirect light meets more.
+// come from several lobes, its light is divided in proportion to their reflection. Direct light meets one surface on
+// its way, whether a light sample or a ray found it, and indirect light meets more.
 enum class LightGroup : std::uint8_t {
   diffuse_direct,
   diffuse_indirect,

@@ -67,7 +67,7 @@ struct TransmissionParameters {
 // KHR_materials_volume: the surface bounds a solid body. Without this extension a transmitting surface is a thin sheet.
 struct VolumeParameters {
   float thickness = 0;               // 0: thin. Only zero or not matters, since the way through the body is traced
-  Vec3f attenuation_color{1, 1, 1};  // linear: what is left of white light after the distance below
+  Vec3f attenuation_color{1, 1, 1};  // linear: the rest of white light after the distance below
   float attenuation_distance_m = std::numeric_limits<float>::infinity();
   [[nodiscard]] bool present() const { return thickness > 0; }
 };
@@ -96,7 +96,7 @@ struct DiffuseTransmissionParameters {
   TextureRef color_texture;  // sRGB
 };
 
-// The metallic-roughness material of glTF 2.0, section 3.9, and its extensions. Factors multiply what textures hold.
+// The metallic-roughness material of glTF 2.0, section 3.9, and its extensions. Factors multiply textures.
 struct Material {
   std::string name;
   Vec4f base_color{1, 1, 1, 1};  // linear Rec.709, alpha last
@@ -131,8 +131,8 @@ struct Material {
   float dispersion = 0;  // KHR_materials_dispersion: 20 / Abbe number; has an effect in solid bodies only
 };
 
-// What a material has beyond metallic-roughness, as far as it can show: a clearcoat of factor 0 does not count. A scene
-// has what any of the materials in use has.
+// Visible features of a material beyond metallic-roughness: a clearcoat of factor 0 does not count. A scene
+// has the features of all materials in use.
 struct MaterialLayers {
   bool clearcoat = false, sheen = false, specular = false, ior = false, transmission = false, volume = false,
        anisotropy = false, iridescence = false, diffuse_transmission = false, dispersion = false;

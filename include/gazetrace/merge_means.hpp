@@ -13,7 +13,7 @@ struct MeanSettings {
   std::vector<std::string> renders;  // patterns of linear pictures, or single ones
   std::string output;                // the pattern of their means
   std::vector<std::string> command_line;
-  bool allow_missing = false;  // take the mean of what there is where a render lacks frames
+  bool allow_missing = false;  // take the mean of the others where a render lacks frames
   bool overwrite = false;
   // The means that are there take in the renders that are not behind them yet. A frame of them that a render lacks is
   // missing as any other.

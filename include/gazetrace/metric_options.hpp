@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which metrics are measured and what they are told of the display: the options that comparisons and sweeps share.
+// The metrics and the display that they assume: the options that comparisons and sweeps share.
 #pragma once
 
 #include <string>

@@ -13,7 +13,7 @@
 
 namespace gazetrace {
 
-// What a metric reads. light: linear, Rec.709 primaries. code: display code values, 0..1 per channel.
+// The input of a metric. light: linear, Rec.709 primaries. code: display code values, 0..1 per channel.
 enum class MetricInput : std::uint8_t { light, code };
 enum class MetricDirection : std::uint8_t { lower, higher };  // which way is better
 
@@ -51,7 +51,7 @@ struct FlipExposures {
   double start_ev = 0, stop_ev = 0;
   int count = 1;
 };
-// What is left empty is computed from the reference picture. Scores compare only where the exposures were the same.
+// Empty values are computed from the reference picture. Scores compare only where the exposures were the same.
 struct FlipExposureSettings {
   FlipToneMapper tone_mapper = FlipToneMapper::aces;
   std::optional<double> start_ev, stop_ev;
@@ -102,7 +102,7 @@ struct HdrFlipMap {
 };
 HdrFlipMap hdr_flip_map(const ImageRgb& reference, const ImageRgb& test, const FlipExposures& exposures,
                         FlipToneMapper tone_mapper, double pixels_per_degree, int threads = 0);
-// Fills in what the settings leave empty. start brings the reference's brightest pixel to 0.85 of the tone curve's
+// Fills in the empty settings. start brings the reference's brightest pixel to 0.85 of the tone curve's
 // range, stop its median pixel: the upper median of all pixels, or 2^-23 where that is darker, as in FLIP 1.7. An
 // all-black reference gives a single exposure of 0.
 FlipExposures flip_exposures(const ImageRgb& reference, const FlipExposureSettings& settings);

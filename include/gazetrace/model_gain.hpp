@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a display, a field of view and the spectrum of the noise allow foveation to gain: how many samples uniform
+// The gain of foveation by display, field of view and spectrum of the noise: how many samples uniform
 // sampling needs over the best rates by eccentricity alone, at the same visible error by FovVideoVDP's model
 // (visible_error.hpp). It knows no picture: noise of the same relative size everywhere, on a field of one luminance.
-// So it is no bound of what a renderer can gain: that the relative noise of a picture differs from place to place, and
+// So it is no bound of a renderer's gain: that the relative noise of a picture differs from place to place, and
 // that its contrast masks noise, are both left out.
 //
 // The best rates. With n(x) samples a pixel the error in band b and channel c has the standard deviation
@@ -12,7 +12,7 @@
 //   n(x) ~ (sum over b, c of (dQ / dA_bc) s_bc(x)^p)^(1 / (1 + p/2)),
 // which is solved by iteration, since the derivatives depend on n. These rates are the same at every quality, since Q
 // falls with all of them as their power of -1.2. The samples that reach a quality heed that the metric limits each
-// difference to 10000, which at uniform rates ends what the fovea counts for: at less quality there is less to gain.
+// difference to 10000, which at uniform rates ends the fovea's contribution: at less quality there is less to gain.
 #pragma once
 
 #include <optional>

@@ -19,22 +19,22 @@ struct OtherView {
   std::int64_t t_video_ns = 0;  // the time whose positions and shapes count
 };
 
-// What the ray through a pixel's centre hits, by the tracer's own numbers: a point that can be followed to any time
+// The hit of the ray through a pixel's centre, by the tracer's own numbers: a point that can be followed to any time
 // without another ray.
 struct PixelHit {
   std::uint32_t instance, geometry, primitive;
   float u, v;
 };
-// What is seen there.
+// The surface seen there.
 struct PixelSight {
   Vec3f position_m;          // from the view's camera, in world axes; zero for a miss
   std::uint32_t object = 0;  // 1 + index into Scene::instances; 0: a miss
   bool is_hit = false;
   bool mirrors = false;  // its look changes sharply with the view: transmission, or a roughness below kMirrorRoughness
 };
-inline constexpr float kMirrorRoughness = 0.2F;  // of the material as a whole, whatever its texture says
+inline constexpr float kMirrorRoughness = 0.2F;  // of the material as a whole, without its texture
 
-// What the pixels of a frame see, one entry each, as SurfaceMotion finds it. They belong to the tracer that found them.
+// The surfaces that the pixels of a frame see, one entry each, as SurfaceMotion finds it. They belong to their tracer.
 struct PixelHits {
   OtherView view;  // from where, and when
   Image<PixelSight> sights;
@@ -51,7 +51,7 @@ struct HitPlace {
   Vec3f moved_m;     // from the one time to the other, in the world
 };
 
-// Finds these places, while the scene stays in its pose. Keeps a reference to what the pixels see.
+// Finds these places, while the scene stays in its pose. Keeps a reference to the pixels' surfaces.
 class HitPlaces {
  public:
   struct Impl;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One definition for each option: its name, its meaning, where its value lies in a structure of settings, and what it
-// touches. The command line, settings files, help, run records, digests, warnings and the reference page are all made
-// from these definitions.
+// One definition for each option: its name, its meaning, where its value lies in a structure of settings, and the
+// stages that it touches. The command line, settings files, help, run records, digests, warnings and the reference page
+// are all made from these definitions.
 //
 // A schema is not bound to any settings: an option knows the place of its value in them and the type of that value, and
 // takes the settings as an argument. Settings are therefore plain values that can be copied, and any number of them can
@@ -33,22 +33,22 @@ enum class Decides : std::uint8_t {
 // repeated: the option may be given several times.
 enum class OptionShape : std::uint8_t { flag, value, list, repeated };
 
-// What an option touches. Touches is a set of these, because some options touch several things.
+// The stages that an option touches. Touches is a set of these, because some options touch several things.
 enum class Touch : std::uint16_t {
-  scene = 1U << 0U,     // what is rendered: the scene's file and its animation
+  scene = 1U << 0U,     // the scene's file and its animation
   camera = 1U << 1U,    // from where it is rendered, lens and shutter included
   light = 1U << 2U,     // the environment
   gaze = 1U << 3U,      // where the viewer looked, and when
   screen = 1U << 4U,    // where the viewer sat
-  frames = 1U << 5U,    // which pictures there are, and of what size
+  frames = 1U << 5U,    // the list of pictures, and their size
   sampling = 1U << 6U,  // how samples are distributed; a uniform frame ignores it
   tracing = 1U << 7U,   // how a path is traced
   filter = 1U << 8U,    // how pixels are reconstructed from samples
-  window = 1U << 9U,    // what a frame takes from those around it
+  window = 1U << 9U,    // samples from the frames around
   color = 1U << 10U,    // exposure and view
   output = 1U << 11U,   // files
   speed = 1U << 12U,    // how fast it goes, and nothing else
-  talk = 1U << 13U,     // what the program says
+  talk = 1U << 13U,     // messages of the program
 };
 
 class Touches {
@@ -77,8 +77,8 @@ constexpr Touches operator|(Touch a, Touch b) {
 }
 std::vector<std::string> touch_names(Touches touches);  // "sampling", "filter"
 
-// What an option means beside its value: to a sweep, which measures many settings against one reference (sweep.hpp),
-// and to readers.
+// The meaning of an option beside its value: to a sweep, which measures many settings against one reference
+// (sweep.hpp), and to readers.
 enum class Trait : std::uint8_t {
   trade_off,      // makes rendering cheaper and less accurate: a reference never takes its value from a row
   needs_truth,    // a trade-off without a value that is right by itself: the plan must state that of the reference
@@ -86,7 +86,7 @@ enum class Trait : std::uint8_t {
   clock,          // decides where a camera that follows the head is at a given time
   gaze_source,    // decides whose gaze is used
   one_run,        // has a meaning for a single run only, such as the names of its files
-  everyday,       // what most people set: help shows these unless it is asked for all
+  everyday,       // options that most people set: help shows these unless asked for all
   always_stated,  // stated in a paragraph on methods even where it has its default
 };
 
@@ -95,13 +95,13 @@ enum class Trait : std::uint8_t {
 struct OptionRange {
   std::optional<double> least, most;
   bool above = false;
-  std::string remedy;  // what to do about a value outside the range; may be empty
+  std::string remedy;  // the remedy for a value outside the range; may be empty
 
   [[nodiscard]] bool holds(double value) const;
   [[nodiscard]] std::string words() const;  // "0..1000", "above 0"
 };
 
-// What options of one type of value have in common, whatever settings hold them. `value` points to one of that type.
+// The common part of all options of one type of value, in any settings. `value` points to one of that type.
 struct OptionType {
   OptionShape shape = OptionShape::value;
   // Sets the value. Throws Error(usage, place, ...) for texts that the type does not take.
@@ -113,7 +113,7 @@ struct OptionType {
   std::vector<double> (*numbers)(const void* value) = nullptr;
 };
 
-// What is known about an option without any settings.
+// The properties of an option without any settings.
 struct Option {
   std::string flags;  // "-o,--output"; without dashes: the command line takes it by its position
   std::string name;   // "output"
@@ -127,7 +127,7 @@ struct Option {
   Touches touches;
   std::vector<Trait> traits;
   std::optional<OptionRange> range;
-  std::vector<std::string> needs;       // what has to be given with it, in words with settings in back quotes
+  std::vector<std::string> needs;       // options that must be given with it, in words with settings in back quotes
   std::vector<std::string> idle_words;  // when it has no effect, in the same kind of words
   std::vector<std::string> defaults;    // its values in default settings; empty: not set
   // Another option and the value that it gets with this one; empty: none.
@@ -367,7 +367,7 @@ class OptionSchema {
     const Place<S, std::vector<std::string>> values = place_in_settings(place);
     return add(flags, repeated_type(), values.offset, unit, touches, help);
   }
-  // For settings outside of jobs, where it does not matter what an option touches.
+  // For settings outside of jobs, where the stages of an option do not matter.
   template <class Where>
   OptionOf<S>& flag(const std::string& flags, Where place, const std::string& help) {
     return value(flags, place, "", Touches(), help);
@@ -486,7 +486,7 @@ enum class PathsBegin : std::uint8_t { beside_settings, working_folder };
 
 // The settings in a TOML text, with every value checked by its option. Throws Error(input) with path:line for a syntax
 // error, for an unknown key (naming the nearest known one) and for a value that its option does not take. `remedy` says
-// what to do about an unknown key. An empty array sets nothing.
+// the remedy for an unknown key. An empty array sets nothing.
 std::vector<TomlSetting> read_toml_settings(const std::string& text, const std::string& path, const OptionList& options,
                                             const std::string& remedy, PathsBegin paths = PathsBegin::beside_settings);
 // Every option with its value, as TOML with the help as comments; options that are not set are commented out.

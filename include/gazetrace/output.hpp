@@ -34,7 +34,7 @@ std::string folder_of_frames(const std::string& pattern);
 std::vector<std::int32_t> find_frames(const std::string& pattern);
 
 enum class ExrPixels { half, float32 };
-// What colours of an EXR are in: linear, with Rec.709's primaries or those of ACES, which are stated in its header.
+// Colour space of an EXR: linear, with Rec.709's primaries or those of ACES, which are stated in its header.
 enum class ExrSpace { rec709, acescg, aces2065_1 };
 // Whether all channels are in one part of the file, or each layer is a part of its own, named after it, the picture
 // first as "beauty". Readers that want one layer of many then read that alone.
@@ -85,7 +85,7 @@ struct OutputSettings {
 // Error(usage) for everything that is known to fail before the first ray: patterns, suffixes, compression, AOVs, bits.
 void check_output_settings(const OutputSettings& settings, bool several_frames);
 
-// A file as it was written: what proves later that it is still the same.
+// A file as it was written: proof that it is still the same later.
 struct WrittenFile {
   std::int32_t frame = 0;
   std::uint64_t bytes = 0;
@@ -100,11 +100,11 @@ using WrittenFiles = std::map<std::string, WrittenFile>;
 struct GazeNumbers {
   // Fractions of the screen, origin top left; of logs that hold directions, fractions of the frame. NaN without gaze.
   double u = std::numeric_limits<double>::quiet_NaN(), v = std::numeric_limits<double>::quiet_NaN();
-  int valid = 0;  // 1: the log has gaze at this time; 0: it has none, and u and v are what stands in for it, or NaN
+  int valid = 0;  // 1: the log has gaze at this time; 0: it has none, and u and v are a substitute, or NaN
 };
 GazeNumbers gaze_numbers(const FrameRequest& request);
 
-// What the header of a frame's file states. It contains no time of day, so that a resumed run writes the same bytes.
+// The header of a frame's file. It contains no time of day, so that a resumed run writes the same bytes.
 struct FrameHeader {
   std::int32_t frame = 0;
   std::int64_t t_video_ns = 0;
@@ -143,7 +143,7 @@ WrittenFile write_density_exr(const std::string& path, const ImageGray& density,
 WrittenFile write_display_image(const std::string& path, const DisplayImage& image, const FrameHeader& header,
                                 const DisplaySettings& settings, const ImageGray* alpha = nullptr);
 ImageRgb read_exr_rgb(const std::string& path);
-// What the header of an EXR or display image of gazetrace says of the run it is of. The digest is empty where there is
+// Data of its run in the header of an EXR or display image of gazetrace. The digest is empty where there is
 // none, and for files that are unreadable or incomplete.
 struct FrameStamp {
   std::string settings_digest;
@@ -187,7 +187,7 @@ std::vector<std::string> timing_columns();
 const std::vector<std::string>& timing_regions();
 std::string timing_row_text(const TimingRow& row);                // one line, without the line break
 std::string timing_csv_text(const std::vector<TimingRow>& rows);  // header and rows
-// Error(input) with file:line. A last line without its line break is what a killed run leaves behind; it is skipped.
+// Error(input) with file:line. A last line without its line break comes from a killed run; it is skipped.
 std::vector<TimingRow> read_timing_csv(const std::string& path);
 
 // Everything that is needed to repeat a run; stored as JSON.
@@ -214,7 +214,7 @@ RunRecord read_run_record(const std::string& path);  // Error(input)
 void check_same_denoiser(const RunRecord& first, const std::string& first_path, const RunRecord& other,
                          const std::string& other_path);
 
-// What the files that tell of a sequence begin with: its folder and its name without number and suffix, so that
+// The prefix of the record files of a sequence: its folder and its name without number and suffix, so that
 // out/frame.####.exr and out/frame.####.png, which one run writes, share "out/frame". A sequence that has no name
 // beside its number, such as out/####.exr, gives "out/".
 std::string run_name_of(const std::string& pattern);
@@ -228,7 +228,7 @@ std::string run_record_file_name(const std::string& run_name, const std::string&
 // beside the outputs, and it is never replaced: so all tasks have the same borders, and a chunk that never began is
 // known to be missing.
 struct ChunkFile {
-  std::string digest;               // of what the borders follow from
+  std::string digest;               // of the inputs of the borders
   std::string frames;               // all of them, a frame list
   std::vector<std::string> chunks;  // the frames of each; an empty text: none
   std::vector<double> samples;      // that the plan expects of each; 0: not known
@@ -236,7 +236,7 @@ struct ChunkFile {
 std::string chunk_file_text(const ChunkFile& file);
 ChunkFile read_chunk_file(const std::string& path);  // Error(input)
 
-// What the run over one part left in a directory.
+// The files of a run over one part in a directory.
 struct RunPart {
   std::string run_name;  // of the sequence that it is a part of
   std::string timing_path, record_path;
@@ -251,9 +251,9 @@ std::vector<RunPart> read_run_parts(const std::string& where);
 // The files of a run that is going on or was killed: beside its record, which takes them over at the end, a line for
 // each as it was written.
 std::string file_journal_name(const std::string& record_path);
-WrittenFiles read_file_journal(const std::string& path);  // empty where there is none; what is damaged is passed over
+WrittenFiles read_file_journal(const std::string& path);  // empty where there is none; skips damaged lines
 
-// A file that is not what the record of its run says.
+// A file that differs from the record of its run.
 struct BadFile {
   std::string path;
   std::int32_t frame = 0;
@@ -268,7 +268,7 @@ std::vector<BadFile> find_bad_files(const std::vector<RunPart>& parts, int threa
 void refuse_bad_files(const std::string& directory, const std::vector<BadFile>& bad);
 
 struct MergeOptions {
-  bool allow_missing = false;  // join what is there; frames whose files are bad count as missing
+  bool allow_missing = false;  // join the others; frames whose files are bad count as missing
   bool overwrite = false;
   bool trust_files = false;  // do not look at the files that the parts' records list
   int threads = 0;           // for looking at them
@@ -285,7 +285,7 @@ struct MergeResult {
 MergeResult merge_runs(const std::string& where, const MergeOptions& options = {});
 
 // Whether a command may write these files, decided before its work for every output of every command: no output is a
-// device, pipe, socket or folder, none is one of the `inputs` (files, or patterns of frames) whatever it is called, no
+// device, pipe, socket or folder, none is one of the `inputs` (files, or patterns of frames) under any name, no
 // two are one file, and unless it may be replaced none is there; else Error(usage or input), which then advises
 // `remedy`. Makes their folders. Empty names are of outputs that nobody asked for.
 void check_outputs(std::vector<std::string> outputs, const std::vector<std::string>& inputs, bool may_replace,

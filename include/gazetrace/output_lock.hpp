@@ -2,7 +2,7 @@
 // How two runs that write the same files keep out of each other's way.
 //   make_output_folders(resolved);
 //   const OutputLock lock = lock_outputs(resolved.pipeline, resolved.frames);
-//   prepare_outputs(resolved);  // looks at what is there, of which nothing changes from here on
+//   prepare_outputs(resolved);  // looks at the existing files, of which nothing changes from here on
 #pragma once
 
 #include <cstdint>

@@ -17,7 +17,7 @@
 
 namespace gazetrace {
 
-// What every frame is made with, and what becomes of the frames.
+// Settings of every frame, and the fate of the frames.
 struct PipelineSettings : FrameSettings {
   OutputSettings output;  // without any pattern nothing is written, not even timing and run record
   FrameRate fps;
@@ -64,7 +64,7 @@ struct SequenceResult {
 
 // Renders the frames of a plan in order. With OutputSettings::resume, frames are skipped whose files carry this
 // settings digest, and have the content that was written. timing.csv grows by a row with each finished frame, so that a
-// killed run keeps what it measured.
+// killed run keeps its measurements.
 SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color,
                                const PipelineSettings& settings, const PipelineObserver& observer);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plan: what will be rendered, decided before the first ray, as one request per frame that can be printed and
+// The plan: all that will be rendered, decided before the first ray, as one request per frame that can be printed and
 // tested.
 #pragma once
 
@@ -43,7 +43,7 @@ std::string to_string(const Shutter& shutter);
 
 // How gaze that was recorded on one screen is carried over to a screen of another size or distance. Velocities, events
 // and precision are always those of the recording.
-//   fraction  keeps positions: what was at a quarter of the screen's width is there again; angles change
+//   fraction  keeps positions: gaze that was at a quarter of the screen's width is there again; angles change
 //   angle     keeps the angles from the eye; positions change, and may fall off the screen
 enum class GazeTransfer : std::uint8_t { fraction, angle };
 
@@ -97,7 +97,7 @@ struct FrameRequest {
   GazeAtTime gaze_true;    // the gaze of the unprocessed log at the frame's time; metrics use this one
   // See GazeAges; in video time. Empty without gaze, and where the log does not tell.
   std::optional<std::int64_t> gaze_effective_age_ns;
-  // What the eye did according to the unprocessed log, at the time of gaze_render, so that no foresight is needed.
+  // The eye movement by the unprocessed log, at the time of gaze_render, so that no foresight is needed.
   bool eye_in_saccade = false;
   // Also by the unprocessed log: whether the eye was in a saccade, or closed, at any time between the gaze_render of
   // the frame before and that of this frame. Both are often shorter than a frame.
@@ -111,7 +111,7 @@ struct FrameRequest {
 // is shown, the age grows from half_frame_ns below this to half_frame_ns above it.
 struct GazeAges {
   std::size_t frames = 0, unknown = 0;  // frames whose gaze has a known age; frames whose gaze has none
-  std::size_t without = 0;              // frames without gaze, whatever steers them instead; not part of the ages
+  std::size_t without = 0;              // frames without gaze, also with a substitute; not part of the ages
   double min_ns = 0, median_ns = 0, mean_ns = 0, p95_ns = 0, max_ns = 0;
   double half_frame_ns = 0;
 };
@@ -135,7 +135,7 @@ struct FramePlan {
   JudgedFrames judged;                       // for QualityTarget::jod
   std::optional<GazeAges> ages;              // empty: no frame has gaze from a log
   std::int64_t gaze_latency_ns = 0;          // that of the settings
-  std::vector<std::string> gaze_processing;  // what was done to the log that steers, one line per step
+  std::vector<std::string> gaze_processing;  // processing of the log that steers, one line per step
   Warnings warnings;
 };
 

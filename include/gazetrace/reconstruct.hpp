@@ -20,7 +20,7 @@ struct Frame {
   ImageGray sample_count;  // effective samples behind a pixel: site samples / site pixels, those of other frames that
                            // join it included
   ImageGray variance;      // of the pixel's mean luminance, from the spread of its samples, or of those around one
-  // Estimate of the squared error of the pixel's luminance: its variance, and the square of what the filter changed
+  // Estimate of the squared error of the pixel's luminance: its variance, and the square of the filter's change
   // beside noise. Empty for filters that make no estimate of it (all but those that need halves). Accumulation leaves
   // it as it was for the samples that went through the filter.
   ImageGray squared_error;
@@ -28,7 +28,7 @@ struct Frame {
   ImageGray depth_m;        // mean over the hits; +Inf where the pixel's site hit nothing
 };
 
-// What a filter must be given besides the sums of every site. Each filter states it in its own file.
+// Inputs of a filter besides the sums of every site. Each filter states it in its own file.
 struct ReconstructionNeeds {
   // The first hits of every pixel, traced with these settings (but see Reconstruction::guide_settings); empty: none.
   std::optional<GuideSettings> guides = std::nullopt;
@@ -52,9 +52,9 @@ struct ReconstructionSettings {
   std::string filter;
 };
 
-struct FilterDefinition;  // what a file of src/reconstruct/filters/ defines
+struct FilterDefinition;  // defined by a file of src/reconstruct/filters/
 
-// A filter with its settings. It states what it needs, so that nobody else has to know the filters.
+// A filter with its settings. It states its inputs, so that nobody else has to know the filters.
 class Reconstruction {
  public:
   // Error(usage) for a name that is not in reconstruction_filters().
@@ -63,7 +63,7 @@ class Reconstruction {
   [[nodiscard]] const FilterInfo& filter() const { return filter_; }
   [[nodiscard]] const ReconstructionNeeds& needs() const { return filter_.needs; }
 
-  // The settings under which the tracer collects what the filter needs: sums per surface of the sites that it changes.
+  // The settings under which the tracer collects the filter's inputs: sums per surface of the sites that it changes.
   [[nodiscard]] TraceSettings trace_settings(TraceSettings settings) const;
   // The settings of the guides that the filter needs, for samples that are traced with `trace`: their materials are
   // those of the samples. Empty: the filter needs no guides.
@@ -88,12 +88,12 @@ struct DenoiserLibrary {
 };
 // Looks for it when it is first called: the environment variable GAZETRACE_OIDN_LIBRARY names its file or folder, or
 // is empty, and there is none; else the system's, one beside the program or in its build folder, that of Python's
-// `pyoidn`, Blender's. Error(usage) where the variable names what cannot be used.
+// `pyoidn`, Blender's. Error(usage) where the variable names an unusable file.
 const DenoiserLibrary& denoiser_library();
 // Library, quality, weights and instruction set, for the records of runs; empty where there is none.
 std::string denoiser_description();
 
-// What decides which filter suits a job. The defaults are those of a foveated job that asks for nothing else.
+// The properties of a job that choose its filter. The defaults are those of a foveated job that asks for nothing else.
 struct FilterFacts {
   bool foveated = true;       // a gaze steers where the samples go, by another sampling than a uniform one
   bool single_pixel = false;  // TraceSettings::only_pixel

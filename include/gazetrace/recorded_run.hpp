@@ -16,7 +16,7 @@ struct RecordedRun {
   // With the scope `viewing`: settings, screen, and where the frame lies on it. Pictures carry their own gaze; the
   // run's gaze log is read only where the screen is stated nowhere else, and only if there still is a log of its name.
   ResolvedJob resolved;
-  std::string view;  // what the display images were shown through; empty where the record does not say
+  std::string view;  // the view of the display images; empty where the record does not state it
 
   [[nodiscard]] const JobSettings& settings() const { return resolved.job.settings; }
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a job to loaded and checked inputs. Whatever can fail fails here, before the first ray is traced. run_job.hpp
-// makes files of a job; in memory a run is
+// From a job to loaded and checked inputs. Everything that can fail fails here, before the first ray is traced.
+// run_job.hpp makes files of a job; in memory a run is
 //   const Job job = load_job("job.toml");
 //   ResolvedJob resolved = resolve(job);
 //   PathTracer tracer(*resolved.scene, tracer_options(resolved.job.settings));
@@ -50,7 +50,7 @@ struct ResolveOptions {
   bool tell_idle = true;
 };
 
-// What the tasks of an array job share: how the frames are divided (ChunkFile), for the first task to write down.
+// Shared by the tasks of an array job: how the frames are divided (ChunkFile), for the first task to write down.
 struct ChunkBorders {
   std::string path;  // empty: nothing is divided
   std::string text;  // empty: it is written
@@ -68,7 +68,7 @@ struct ResolvedJob {
   ChunkBorders chunk_borders;        // prepare_outputs() writes them once
   PipelineSettings pipeline;         // with its digest, from the scope `digests` on
   std::map<std::string, std::string> input_digests;  // path -> content hash
-  // What was decided where the settings left a choice, such as "environment" -> "the built-in sky, ...", and which
+  // Decisions where the settings left a choice, such as "environment" -> "the built-in sky, ...", and which
   // settings were replaced by others.
   Decisions decisions;
   Warnings warnings;  // about scene, camera, log and plan; those about options without effect come first
@@ -110,7 +110,7 @@ void settle_exposure(PathTracer& tracer, ResolvedJob& resolved);
 RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer, const ColorPipeline& color,
                            const std::vector<std::string>& command_line = {});
 void finish_run_record(RunRecord& record, const SequenceResult& result, const FramePlan& plan, double wall_s);
-// What to report about a finished run: frames without gaze, clamped values, and samples that were not finite, with the
+// The report on a finished run: frames without gaze, clamped values, and samples that were not finite, with the
 // options that replay them.
 Warnings result_warnings(const SequenceResult& result, const FramePlan& plan);
 
@@ -140,16 +140,16 @@ std::optional<DisplayGeometry> screen_geometry(const ScreenSettings& screen);
 GazeColumns merged_columns(const GazeFileSettings& gaze);  // the column map, overridden by the options
 GazeReadOptions read_options(const GazeFileSettings& gaze, const ScreenSettings& screen);
 GazeLog read_gaze_file(const GazeFileSettings& gaze, const ScreenSettings& screen);
-// Throws Error(usage, input) for anchors that are wrong; `decision` receives what the anchors gave, in words.
+// Throws Error(usage, input) for anchors that are wrong; `decision` receives the result of the anchors, in words.
 // `taken_off_ns` is how many nanoseconds the log's stamps are below those of its file.
 GazeMapping gaze_mapping(const JobSettings& job, const GazeLog* log, std::int64_t taken_off_ns = 0,
                          std::string* decision = nullptr);
-// Where the log of a screen gives no angles, takes what it does not state of its geometry from the given screen.
+// Where the log of a screen gives no angles, takes missing values of its geometry from the given screen.
 void complete_recording_geometry(GazeLog& log, const ScreenSettings& screen);
 std::vector<GazeStep> gaze_steps_of(const std::vector<std::string>& texts);
 // Whether the camera comes from the scene's file.
 bool camera_needs_scene(const JobSettings& job);
-// Sets the environment of the scene, which also decides what "auto" stands for; returns in words what was chosen.
+// Sets the environment of the scene, which also decides on "auto"; returns the choice in words.
 std::string set_environment(const JobSettings& job, Scene& scene);
 // How the scene of a job is read: its animation, threads and limits.
 SceneReadOptions scene_read_options(const JobSettings& job);

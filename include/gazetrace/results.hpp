@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a sweep measured. There is one model: `sweep` fills it, results.json holds it, and tables, pages and diagrams
-// are made from it. Values that do not exist or are not finite are null in the file, and empty after reading.
+// The measurements of a sweep. There is one model: `sweep` fills it, results.json holds it, and tables, pages and
+// diagrams are made from it. Values that do not exist or are not finite are null in the file, and empty after reading.
 #pragma once
 
 #include <cstddef>
@@ -50,7 +50,7 @@ struct ResultScore {
 struct ResultFrame {
   std::int32_t index = 1;  // the number in the names of its pictures
   double t_s = 0;          // video time
-  // What the eye did: "fixation", "in-flight" (a saccade and the 100 ms after it), "blink", "unclassified" or "none"
+  // The eye movement: "fixation", "in-flight" (a saccade and the 100 ms after it), "blink", "unclassified" or "none"
   // (there is no gaze). "start" marks frames of the first part of the clip that is not scored.
   std::string event = "none";
   std::optional<Vec2d> gaze_px;                         // gaze_true, in continuous frame pixels
@@ -60,7 +60,7 @@ struct ResultFrame {
   std::map<std::string, std::optional<double>> scores;  // by metric, of the whole frame in the first repeat
 };
 
-// What somebody else has published for a setting.
+// The published speed-up of a setting.
 struct PublishedSpeedUp {
   double speed_up = 0;  // t_uniform / t_foveated
   std::string source;
@@ -93,7 +93,7 @@ struct ResultRow {
   std::vector<ResultFrame> frames;
 };
 
-// By how much the reference differs from itself in the frames in which a gaze is scored, and what that gaze looks at.
+// By how much the reference differs from itself in the frames in which a gaze is scored, and the object of that gaze.
 struct ResultFloor {
   std::string gaze;  // empty: of rows without gaze, or of every gaze in a file that does not tell them apart
   ScoreTable scores;
@@ -125,13 +125,13 @@ struct FixedQuality {
   std::string bound;  // "": as it stands; ">", "<": no more is known
   std::string why;    // why it is a bound, or why there is none
 };
-// A curve holds rows that differ only in their rates of samples. `curve` says what else of the varied options its
+// A curve holds rows that differ only in their rates of samples. `curve` names the other varied options that its
 // foveated rows have in common, such as "region-blocks 1;1".
 struct ResultFixedQuality {
   std::string metric, scene, gaze, curve;
   double at = 0;
   FixedQuality result;
-  // Of a level in JOD: what sampling by eccentricity alone can save by model_gain.hpp, for white noise.
+  // Of a level in JOD: the saving of sampling by eccentricity alone by model_gain.hpp, for white noise.
   std::optional<double> model_gain = std::nullopt;
 };
 
@@ -152,7 +152,7 @@ struct ResultMachine {
 struct ResultViewing {
   std::vector<int> size_px;  // width and height; empty: not known
   std::optional<double> pixels_per_degree, width_deg, peak_cd_m2, contrast, ambient_lux;
-  // What sampling by eccentricity alone can save here by model_gain.hpp, at 9.5 JOD, with the gaze of the first test's
+  // The saving of sampling by eccentricity alone here by model_gain.hpp, at 9.5 JOD, with the gaze of the first test's
   // first frame: for white noise, and with its variance below 4 cycles a degree cut tenfold.
   std::optional<double> model_gain, model_gain_cut_4_cpd;
 };
@@ -188,12 +188,12 @@ struct Results {
 // its version as its "format".
 std::string results_json(const Results& results);
 // A results file, or a folder with results.json. Error(input) for a file of another version, and with the place in the
-// file for what is missing or of the wrong kind.
+// file for missing values and those of the wrong kind.
 Results read_results(const std::string& path);
 
 // A line for each row, metric and part of the picture; a line without scores for a row that has none.
 std::string results_csv(const Results& results);
-// What a person reads on the terminal.
+// The text on the terminal.
 std::string results_table(const Results& results);
 // A paragraph with every setting, to be pasted into a paper.
 std::string results_methods(const Results& results);

@@ -18,7 +18,7 @@ struct StartedRun {
   const ResolvedJob& resolved;
   const PathTracer& tracer;
   std::shared_ptr<ColorPipeline> color;
-  std::vector<std::string> files;  // output_files(): what it writes
+  std::vector<std::string> files;  // output_files() of the run
 };
 
 // Called from the thread of run_job(), unless they say otherwise. Any of them may be empty. A run is ended by
@@ -26,7 +26,7 @@ struct StartedRun {
 struct RunObserver : PipelineObserver {
   std::function<void(std::size_t done, std::size_t total)> loading;  // see ResolveOptions
   std::function<void()> building_tree;                               // the scene is loaded, which may take as long
-  // What is handed over lives until run_job() returns.
+  // The arguments must outlive run_job().
   std::function<void(const StartedRun& run)> begins;
   // Whether to give up the frame in hand. Asked often, and from many threads.
   std::function<bool()> stop_now;

@@ -109,7 +109,7 @@ struct SceneCamera {
   CameraPath path;  // static or animated, by its node or that node's parents
 };
 
-// What a scene contains. The tracer chooses the variant of its inner loop by it.
+// The features of a scene. The tracer chooses the variant of its inner loop by it.
 struct SceneFeatures {
   bool textures = false;
   bool normal_maps = false;
@@ -144,7 +144,7 @@ struct Scene {
 
   std::vector<std::string> animations;  // names; "#0" where the file gives none
   std::vector<std::string> extensions_used;
-  std::vector<std::string> ignored;  // what the file contains and gazetrace does not show, one line each
+  std::vector<std::string> ignored;  // parts of the file that gazetrace does not show, one line each
   Warnings warnings;
 };
 
@@ -164,19 +164,19 @@ struct SceneReadOptions {
   std::string animation;
   // Called with the number of textures and meshes that are ready; from several threads, but never at the same time.
   std::function<void(std::size_t done, std::size_t total)> progress;
-  // What the loaded scene may take with its tracing structures, as estimate_scene() reckons it, whatever its few bytes
-  // claim; 0: most_memory_bytes(). A sixteenth of it is what one picture may unpack to beyond 200 times its file, and
-  // what the nodes may take. Every refusal names `max-memory`.
+  // The most memory of the loaded scene with its tracing structures, by estimate_scene() and not by the size of its
+  // file; 0: most_memory_bytes(). One picture may unpack to a sixteenth of it beyond 200 times its file, and the
+  // nodes may take a sixteenth. Every refusal names `max-memory`.
   std::uint64_t memory_bytes = 0;
   // The scene may name files outside of its data set. Otherwise buffers and pictures must lie, symbolic links followed,
   // in the scene's folder or in the data set that it belongs to, see src/core/data_root.hpp.
   bool allow_outside = false;
   bool allow_missing = false;    // a material whose picture is not there is shown without it, with a warning
   bool cull_back_faces = false;  // becomes Scene::cull_back_faces
-  bool strict = false;           // whatever is else a warning of the scene is an Error(input)
+  bool strict = false;           // every warning of the scene is an Error(input)
 };
 
-// What a scene will take in memory, from its JSON and the headers of its pictures: no picture is decoded.
+// The memory that a scene will take, from its JSON and the headers of its pictures: no picture is decoded.
 struct SceneEstimate {
   std::uint64_t file_bytes = 0;      // the scene's file with its buffers, held while it is loaded
   std::uint64_t geometry_bytes = 0;  // vertices and triangles
@@ -189,11 +189,11 @@ struct SceneEstimate {
     return file_bytes + geometry_bytes + texture_bytes + picture_bytes + node_bytes + tree_bytes;
   }
 };
-// Error(input) as load_scene() would throw for what the JSON and the headers of pictures say; not for its memory.
+// Error(input) as load_scene() would throw for faults of the JSON and of pictures' headers; not for its memory.
 SceneEstimate estimate_scene(const std::string& path, const SceneReadOptions& options = {});
 
 // Reads a .gltf or .glb file. Error(input) names the file, the place in its JSON
-// ("meshes[3].primitives[0].attributes.NORMAL") and what is wrong; an unknown extension in extensionsRequired is such
+// ("meshes[3].primitives[0].attributes.NORMAL") and the fault; an unknown extension in extensionsRequired is such
 // an error.
 Scene load_scene(const std::string& path, const SceneReadOptions& options = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene's file names that moves or deforms: animations, skins and morph targets. It is read for people who look
+// The moving and deforming parts of a scene's file: animations, skins and morph targets. It is read for people who look
 // into a file; a Scene (scene.hpp) has these things in the form in which they are rendered.
 #pragma once
 

@@ -3,9 +3,9 @@
 //
 // The sky is the analytic model of A. J. Preetham, P. Shirley and B. Smits, "A Practical Analytic Model for Daylight",
 // SIGGRAPH 1999, appendix A.2: luminance and chromaticity of a direction from turbidity and the sun's height. The sun
-// is a disc of its true size, whose light is what the atmosphere leaves of it by the transmittances of appendix A.1 for
+// is a disc of its true size, whose light the atmosphere attenuates by the transmittances of appendix A.1 for
 // molecules and haze at three wavelengths; ozone, mixed gases and water vapour, which take a few per cent, are left
-// out. Below the horizon, where the model says nothing, is a ground that reflects a part of what falls on it.
+// out. Below the horizon, where the model ends, is a ground that reflects a part of its light.
 #pragma once
 
 #include "gazetrace/scene.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders many settings and compares them with one certified reference: what each costs in time and in quality, beside
-// the uniform renderings without which a claim would not be honest.
+// Renders many settings and compares them with one certified reference: the cost of each in time and its quality,
+// beside the uniform renderings without which a claim would not be honest.
 #pragma once
 
 #include <cstdint>
@@ -70,7 +70,7 @@ struct SweepMeasure {
   // The levels of quality at which times are compared: metric and level.
   std::vector<std::pair<std::string, double>> fixed_quality;
   bool write_png = true, write_exr = false;  // pictures of the first repeat
-  // Samples per pixel of the run that tells what a sample costs in each region; 0: no efficiency is measured.
+  // Samples per pixel of the run that measures the cost of a sample in each region; 0: no efficiency is measured.
   std::uint32_t efficiency_spp = 4;
 };
 
@@ -81,9 +81,9 @@ struct SweepPlan {
   std::vector<SweepTest> tests;
   NamedValues gazes;  // names and settings in words, for the paragraph on methods
   SweepMeasure measure;
-  bool restart = false;         // throws away what an earlier sweep has left in the directory
+  bool restart = false;         // deletes an earlier sweep in the directory
   bool go_on = false;           // measures although a reference is known too badly for the levels that are asked for
-  bool trust_files = false;     // does not compare the pictures that are there with what was written
+  bool trust_files = false;     // does not compare existing pictures with their digests
   NamedValues common_settings;  // all options that no row varies
   NamedValues stated_settings;  // those of them that were chosen, or that decide light and sampling
   std::vector<std::string> varied;
@@ -110,15 +110,15 @@ struct QualityAtTime {
 // in the other, or beats in both.
 std::vector<std::size_t> pareto_front(const std::vector<QualityAtTime>& points, MetricDirection better);
 // t_uniform / t_foveated at one quality. log t is interpolated linearly over quality between neighbours on the front of
-// each curve, and never extrapolated: where a curve does not reach the level, what is known is a bound.
+// each curve, and never extrapolated: where a curve does not reach the level, there is only a bound.
 FixedQuality speed_up_at_quality(const std::vector<QualityAtTime>& uniform, const std::vector<QualityAtTime>& foveated,
                                  MetricDirection better, double level);
 
 struct SweepObserver {
-  std::function<void(const std::string& line)> tell;  // a line on what is being done, for a person; may be empty
+  std::function<void(const std::string& line)> tell;  // a line on the current work, for a person; may be empty
   std::function<void(const std::string& line)> warn;  // of files that are damaged, and made again; may be empty
   // As PipelineObserver::stop_before_frame and TraceSettings::stop. The row, or the picture of a reference, that is in
-  // hand is then given up with Error(interrupted); what was finished before stays.
+  // hand is then given up with Error(interrupted); finished work stays.
   std::function<bool(double frame_ms)> stop_before_frame;
   std::function<bool()> stop_now;
 };
@@ -148,18 +148,18 @@ class SweepDirectory {
 
 // Makes and locks the directory; to be called before run_sweep(), or run_sweep_task(). Error(usage) for a plan without
 // tests, Error(input) where the directory cannot be made, or holds work of another build or machine: times and pictures
-// of two builds are never mixed. What is there and is not as it was written, by the digests of records and pictures, is
-// removed with a warning, and will be made again.
+// of two builds are never mixed. Files that have changed since they were written, by the digests of records and
+// pictures, are removed with a warning, and will be made again.
 [[nodiscard]] SweepDirectory prepare_sweep(const SweepPlan& plan, const std::optional<SweepTask>& task = std::nullopt,
                                            const SweepObserver& observer = {});
 // Error(usage) where a metric cannot score this test, or no frame of it would be scored. It needs only sizes and rates,
 // so that it can be called before anything is rendered.
 void check_scoring(const SweepMeasure& measure, const SweepTest& test);
-// Renders what is not yet finished in the directory, in rounds over all rows of a scene, and returns what follows from
-// it.
+// Renders the unfinished rows in the directory, in rounds over all rows of a scene, and returns the
+// results.
 Results run_sweep(const SweepPlan& plan, const SweepObserver& observer);
 
-// The rows of one task: their ids, and the samples that they and what follows from them will take, with an allowance
+// The rows of one task: their ids, and the samples of these rows and of their baselines, with an allowance
 // for each pixel.
 struct SweepShare {
   std::vector<std::string> rows;
@@ -172,14 +172,14 @@ std::vector<SweepShare> divide_sweep(const SweepPlan& plan, std::uint32_t count)
 // the work on its references, too: each renders pictures that no other is at. Error(nothing_to_do) for a task without
 // rows.
 void run_sweep_task(const SweepPlan& plan, const SweepTask& task, const SweepObserver& observer);
-// The results of all tasks, as run_sweep() would have them but for the times. Nothing is rendered. What lies in
-// `folders` is taken into the plan's directory before, which is made and locked. Error(input) for folders of another
+// The results of all tasks, as run_sweep() would have them but for the times. Nothing is rendered. The contents of
+// `folders` are taken into the plan's directory before, which is made and locked. Error(input) for folders of another
 // build, and where rows or references are not finished, or were, and are damaged since.
 Results merge_sweep(const SweepPlan& plan, const std::vector<std::string>& folders, const SweepObserver& observer = {});
 
 // The rows that the plan will measure and the camera samples that they take, without rendering. The search for the rate
 // of equal time and the warm-up are not counted. A scene that is seen from one place in several frames is loaded,
-// because it depends on what moves in it whether its reference is one picture or many.
+// because its reference is one picture only if nothing in it moves.
 struct SweepEstimate {
   struct Row {
     std::string id, label, role;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a sweep's plan as it is written in TOML to what will be measured: every combination of scene, gaze and setting,
+// From a sweep's plan in TOML to its rows: every combination of scene, gaze and setting,
 // as a loaded, checked and planned job. Nothing is rendered.
 #pragma once
 
@@ -19,8 +19,8 @@ struct LoadedSweepPlan {
 // Whether a TOML file is the plan of a sweep, and not a job; by its tables alone. False for a file that cannot be read.
 bool is_sweep_plan(const std::string& path);
 
-// `frames` and `threads`, where given, replace those of the plan. What rows share with their reference and with the
-// uniform frames compared to them follows from what `schema` says that their options touch. Throws Error(usage, input)
+// `frames` and `threads`, where given, replace those of the plan. The stages that options touch, by `schema`,
+// decide which of them rows share with their reference and their uniform frames. Throws Error(usage, input)
 // whose message is one line and names the line of the plan that is at fault, where there is one. `confine`: the plan is
 // not trusted, and one that names a file outside of its own folder or data set is refused before anything is opened.
 LoadedSweepPlan load_sweep_plan(const std::string& path, const std::optional<FrameList>& frames = {},

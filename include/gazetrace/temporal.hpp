@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames over time: what a frame takes from those around it.
+// Frames over time: the samples that a frame takes from those around it.
 #pragma once
 
 #include <cstdint>

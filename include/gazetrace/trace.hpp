@@ -40,7 +40,7 @@ struct TraceSettings {
   // is hidden, and a little more time where it is not.
   // FrameRenderer trains the field; trace() itself only follows `guiding_field`.
   bool guiding = true;
-  // trace() draws bounces by it. Empty: by the BSDF alone, whatever `guiding` says.
+  // trace() draws bounces by it. Empty: by the BSDF alone, even with `guiding`.
   std::shared_ptr<const GuidingField> guiding_field;
   bool show_environment = true;           // false: it gives light, and is black where the camera sees it itself
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
@@ -62,7 +62,7 @@ struct TraceSettings {
   std::function<bool()> stop;
 };
 
-// How one of many small lights is chosen: in proportion to its power, or by a tree of bounds on what each light can
+// How one of many small lights is chosen: in proportion to its power, or by a tree of bounds on the light that each can
 // contribute to the shaded point. automatic: the tree from four small lights on, where it was measured to pay.
 enum class LightChoice : std::uint8_t { automatic, power, tree };
 
@@ -90,7 +90,7 @@ struct GuideSums {
 // Sums over those samples of a site whose first hits lie on one surface: they are of one kind, face about the same way
 // and lie about in one plane. A site has at most kMostSurfaces; further samples join the one that fits best.
 struct SurfaceSums {
-  Vec3f reflected;            // sum of the radiance, without what the first hit itself emits
+  Vec3f reflected;            // sum of the radiance, without the emission of the first hit
   Vec3f albedo;               // sum, as Guides::albedo
   Vec3f normal;               // sum of the shading normals
   Vec3f position_m;           // sum of the hit points, relative to the camera, in world axes
@@ -98,18 +98,18 @@ struct SurfaceSums {
   float half_difference = 0;  // as SparseFrame::half_difference, of the mean luminance of `reflected`
   std::uint32_t count = 0;
   SurfaceKind kind = SurfaceKind::diffuse;
-  // As SparseFrame::half_difference, of the luminance of `albedo` over *all* samples of the site: what chance does to
-  // the surface's texture and to the share of the site that it covers.
+  // As SparseFrame::half_difference, of the luminance of `albedo` over *all* samples of the site: the effect of
+  // chance on the surface's texture and on the share of the site that it covers.
   float albedo_difference = 0;
 };
 inline constexpr std::size_t kMostSurfaces = 3;
 
-// What all samples of a site saw first, through lens, shutter and transparency, and how far that is from what a pinhole
-// sees at the middle of the frame's time.
+// The first hits of all samples of a site, through lens, shutter and transparency, and their distance from the view of
+// a pinhole at the middle of the frame's time.
 struct FirstHitSums {
   Vec3f shone;                 // sum of the radiance that is seen directly: emission, unlit surfaces, the environment
   float shone_difference = 0;  // as SparseFrame::half_difference, of the mean luminance of `shone`
-  // Sum of the squared distances (px^2) between where a sample is in the frame and where the pinhole sees what it hit.
+  // Sum of the squared distances (px^2) between a sample's place in the frame and the place of its hit by the pinhole.
   // Without a lens and without motion while the shutter is open this is 0. A distance counts as kMostShiftPx at most.
   float square_shift_px2 = 0;
   std::uint32_t blended = 0;  // how many samples hit a surface of AlphaMode::blend
@@ -152,7 +152,7 @@ struct HalfSum {
   std::uint32_t count = 0;  // of those that are numbers
 };
 
-// What the tracer found: one entry per site of the map, in the map's order.
+// The tracer's result: one entry per site of the map, in the map's order.
 struct SparseFrame {
   int width_px = 0, height_px = 0;
   std::vector<Vec3f> sum;                    // radiance, summed over the site's samples
@@ -186,7 +186,7 @@ struct TracerMemory {
   double build_s = 0;           // time that building the scene took
 };
 
-// What one ray of a camera hits first.
+// The first hit of one ray of a camera.
 struct RayHit {
   std::uint32_t object = 0;    // 1 + index into Scene::instances; 0: nothing, the environment
   std::uint32_t material = 0;  // 1 + index into Scene::materials; 0: nothing
@@ -217,7 +217,7 @@ class PathTracer {
   // The scene as its file places it when no animation plays.
   [[nodiscard]] PosedScene at_rest();
 
-  // Whether anything in the scene moves or deforms, at whatever time.
+  // Whether anything in the scene moves or deforms, at any time.
   [[nodiscard]] bool moves() const;
 
   [[nodiscard]] const Scene& scene() const;
@@ -234,8 +234,8 @@ class PathTracer {
 // A scene in one pose. Rays can only be traced through it, so that no picture is ever of a pose that nobody named.
 //
 // It names the pose and holds no copy of the scene: the tracer, which must outlive it, has one ray tracing tree. That
-// tree is put into the pose when it is asked for, and back into it where another pose was used in between. So what
-// these functions return depends on the pose and their arguments alone, and has the same bits for any number of
+// tree is put into the pose when it is asked for, and back into it where another pose was used in between. So the
+// results of these functions depend on the pose and their arguments alone, and have the same bits for any number of
 // threads. The tree cannot be in two poses at once: threads of the caller may share one pose, but must not use two at a
 // time.
 class PosedScene {
@@ -247,7 +247,7 @@ class PosedScene {
   // Traces up to one path for every eight pixels, at most 65536: first 4096 of them, and the others only where those
   // promise a gain. Trains on them for each place from where light arrives (Müller, Gross and Novák, "Practical Path
   // Guiding for Efficient Light-Transport Simulation", 2017). The result depends on the pose, the arguments and the
-  // seed, not on what is traced with it: frames between which nothing moves train the same field.
+  // seed, not on the samples traced with it: frames between which nothing moves train the same field.
   [[nodiscard]] TrainedGuiding train_guiding(const Camera& camera, int width_px, int height_px,
                                              const TraceSettings& settings) const;
 
@@ -267,11 +267,11 @@ class PosedScene {
                                                const std::vector<SurfaceIds>& surfaces,
                                                const CoverageSettings& settings) const;
 
-  // What the pixels' centres see in this pose, and where that is in another view, earlier or later.
+  // The surfaces that the pixels' centres see in this pose, and their places in another view, earlier or later.
   [[nodiscard]] SurfaceMotion surface_motion(const Camera& camera, int width_px, int height_px,
                                              const OtherView& other) const;
 
-  // What the pixels' centres see in this pose, which is that of `view`'s time.
+  // The surfaces that the pixels' centres see in this pose, which is that of `view`'s time.
   [[nodiscard]] PixelHits pixel_hits(const OtherView& view, int width_px, int height_px) const;
   // Where that is in another view. It costs least in a pose of either view's time. Keeps a reference to `seen`.
   [[nodiscard]] HitPlaces places_of(const PixelHits& seen, const OtherView& other) const;

@@ -52,7 +52,7 @@ class VideoWriter {
  public:
   // Error(input) where the program is not found.
   VideoWriter(const std::string& path, int width_px, int height_px, const VideoSettings& settings);
-  ~VideoWriter();  // where finish() was not called, stops ffmpeg and removes what it wrote
+  ~VideoWriter();  // where finish() was not called, stops ffmpeg and removes its file
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
   // Adds a frame of 8 bits and the writer's size. Error(runtime) with ffmpeg's message where that fails.
@@ -70,7 +70,7 @@ DisplayImage side_by_side(const DisplayImage& left, const DisplayImage& right);
 using Rgb8Color = std::array<std::uint8_t, 3>;
 inline constexpr Rgb8Color kGazeColor{255, 210, 63};
 
-// Draws a ring with a dark rim about a continuous pixel position, which leaves visible what is looked at; parts outside
+// Draws a ring with a dark rim about a continuous pixel position, which leaves its inside visible; parts outside
 // the picture are cut off.
 void draw_gaze_ring(DisplayImage& image, const Vec2d& gaze_px, double radius_px, double width_px);
 // Draws the line where the eccentricity from the gaze is `eccentricity_deg`, as the view shows it.

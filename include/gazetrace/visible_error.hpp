@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the eye will notice of an error that is known by its size only: before there is a reference, and before the
+// The visibility of an error that is known by its size only: before there is a reference, and before the
 // samples are drawn. It is FovVideoVDP (fovvideovdp.hpp) with the *expected* squared error of every pixel in place of a
-// second picture, so that what it predicts is what that metric measures afterwards.
+// second picture, so it predicts the result of that metric.
 //
 // The model. Let e be the error of a frame's displayed luminance: normally distributed about 0, of variance v(x) at
 // pixel x, with a spectrum and a correlation over time that are given. FovVideoVDP splits it into the bands b of a
@@ -17,7 +17,7 @@
 // and then, as in the metric, Q_bc = (mean of a_bc over the pixels)^(1/r), a sum over the bands, the channels pooled
 // with 0.666, the mean over frames, and JOD = 10 - 0.0161713 Q^0.5916.
 //
-// What it leaves out: errors whose distribution has heavier tails than the normal one (at a few samples a pixel they
+// It leaves out: errors whose distribution has heavier tails than the normal one (at a few samples a pixel they
 // are more visible than predicted, above all in the finest band), contrast of the picture over time, which masks the
 // transient channel, and errors of colour at equal luminance.
 //
@@ -48,7 +48,7 @@ namespace gazetrace {
 // 1.52134 of the pooling.
 inline constexpr double kVisiblePooling = 2.4 * 1.52134;
 
-// ---- What an error is like
+// ---- The error
 
 // How the variance of an error is spread over the bands of FovVideoVDP's pyramid, finest first: the variance of the
 // band's values over the variance of the pixels. Bands do not share out a whole: those of white noise have 0.876, 0.060
@@ -68,7 +68,7 @@ ErrorSpectrum low_pass_error(double sigma_px);
 // White noise whose power is multiplied by `factor` below a frequency. The gains are relative to the variance of the
 // white noise *before* the cut. The frequency is radial, in cycles per degree.
 ErrorSpectrum cut_error(double below_cpd, double factor, double pixels_per_degree);
-// What the bands of a sample of the error hold, for example of half the difference of two independent halves of the
+// The power of a sample of the error in each band, for example of half the difference of two independent halves of the
 // samples. The sample should be divided by the picture's luminance; its mean and its border are left out.
 ErrorSpectrum measured_spectrum(const ImageGray& error, int threads = 0);
 
@@ -76,8 +76,8 @@ ErrorSpectrum measured_spectrum(const ImageGray& error, int threads = 0);
 // band by band. So fresh noise and a filter's standing bias are two components, as are the noise of single pixels in
 // the fovea and that of blocks in the periphery (each with 0 where the other is).
 struct ErrorComponent {
-  // The expected squared error of each pixel's luminance, in the square of VisiblePicture::luminance's unit. What is
-  // negative or not finite counts as 0.
+  // The expected squared error of each pixel's luminance, in the square of VisiblePicture::luminance's unit. Negative
+  // and infinite values count as 0.
   ImageGray squared_error;
   ErrorSpectrum spectrum = white_error();
   // From one frame to the next, in 0..1; over more frames it falls geometrically. 0: fresh noise in every frame, which
@@ -86,11 +86,11 @@ struct ErrorComponent {
   double correlation = 0;
 };
 
-// ---- What the picture is like
+// ---- The picture
 
 // How scene-linear luminance becomes luminance of the display: a curve that does not fall. Errors pass through it with
-// the finite difference (curve(Y + s) - curve(Y - s)) / 2 of their own standard deviation s, so that what a view or a
-// display clips is not counted as visible.
+// the finite difference (curve(Y + s) - curve(Y - s)) / 2 of their own standard deviation s, so that errors clipped by
+// a view or a display do not count as visible.
 struct DisplayCurve {
   // cd/m2 at the scene luminances 0, and 2^(kLeastLog2 + i / kStepsPerStop); linear between them, constant
   // above.
@@ -113,7 +113,7 @@ struct VisiblePicture {
   // everywhere (FovVideoVDP's mode without foveation).
   std::optional<Vec3d> gaze_direction = std::nullopt;
   // Whether `luminance` contains an error like that of the components, as a noisy pilot does. Then its contrast counts
-  // as masking only so far as it exceeds what the error explains. Where pictures are given in cells, the value of each
+  // as masking only so far as it exceeds the error's own contrast. Where pictures are given in cells, the value of each
   // is taken to hold the error of a single pixel, as in a pilot that shows every cell_px-th pixel.
   bool holds_the_error = true;
   // How many frames the clip has had before this one; empty: more than 250 ms. FovVideoVDP takes a clip to have stood
@@ -127,7 +127,7 @@ struct VisibleErrorSettings {
   PlanarView view;               // of the frame
   double frames_per_second = 0;  // 0: a still, which has no transient channel
   // Pictures may be given at a lower resolution: each of their pixels is the mean over cell_px x cell_px pixels of the
-  // frame (at the right and lower border over what is left of them), a power of two. Spectra are still those of the
+  // frame (at the right and lower border over fewer pixels), a power of two. Spectra are still those of the
   // frame's pixels, and squared errors those of single pixels. Bands finer than a cell are computed as well, without
   // masking by a contrast that is not known.
   int cell_px = 1;
@@ -187,7 +187,7 @@ double visible_jod(const std::vector<double>& q_of_frames);
 // an exponent of 0.646 of w^2 v, or 1.29 of the visible error w sqrt(v). (With b = 2, the plain sum of squared errors,
 // it is Neyman's allocation, n ~ w sqrt(v).)
 // `weights` and the variance are in the same unit: both of the luminance itself, or both relative. The result has a
-// mean of 1 and is nowhere below kLeastAllocation; what is negative or not finite counts as 0; where everything is 0,
+// mean of 1 and is nowhere below kLeastAllocation; negative and infinite values count as 0; where everything is 0,
 // it is 1. Error(usage) where the sizes differ.
 inline constexpr float kLeastAllocation = 1e-4F;
 ImageGray visible_allocation(const ImageGray& weights, const ImageGray& variance_of_one_sample, int threads = 0);
