@@ -226,6 +226,18 @@ TEST(Architecture, TheProgramUsesPublicHeadersOnly) {
   }
 }
 
+// They are compiled together, several as one file.
+TEST(Architecture, EveryTestHasANamespaceOfItsOwn) {
+  for (const fs::path& path : sources({"tests/unit", "tests/stats", "tests/render", "tests/reference"})) {
+    if (path.stem().string().ends_with("_test")) {
+      std::ifstream in(path);
+      const std::string text{std::istreambuf_iterator<char>(in), {}};
+      const std::string wanted = "namespace gazetrace::" + path.stem().string() + " {";
+      EXPECT_NE(text.find(wanted), std::string::npos) << path << ": say `" << wanted << "`";
+    }
+  }
+}
+
 TEST(Architecture, EveryFileNamesItsLicence) {
   for (const fs::path& path : sources({"include", "src", "tests", "examples"})) {
     std::ifstream in(path);

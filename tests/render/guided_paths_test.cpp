@@ -79,35 +79,39 @@ std::shared_ptr<const GuidingField> nonsense_field() {
   return std::make_shared<const GuidingField>(records, 1);
 }
 
+// Standard errors are 0.2 to 0.5 % of the mean.
 TEST(GuidedPaths, MeansDoNotChange) {
   const std::shared_ptr<const GuidingField> nonsense = nonsense_field();
   ASSERT_TRUE(nonsense->pays());
-  for (const bool glossy : {false, true}) {
-    for (const bool layered : {false, true}) {
-      for (const DiffuseModel diffuse : {DiffuseModel::matte, DiffuseModel::lambert}) {
-        const Scene scene = room(glossy, layered);
-        PathTracer tracer(scene, threads(2));
-        const SamplingMap map = uniform_map(24, 16, 64);
-        TraceSettings settings;
-        settings.diffuse = diffuse;
-        const Repeats plain = repeat(tracer, map, settings);
-        TraceSettings guided = settings;
-        guided.guiding_field = train(tracer, settings);
-        ASSERT_NE(guided.guiding_field, nullptr);
-        const Repeats with_field = repeat(tracer, map, guided);
-        EXPECT_LT(std::fabs(welch_t(plain, with_field)), kCriticalT) << plain.mean() << " " << with_field.mean();
-        EXPECT_LT(std::sqrt(with_field.variance_of_mean()), 0.01 * with_field.mean()) << "too noisy to mean anything";
-        EXPECT_NE(plain.means, with_field.means);
-        guided.guiding_field = nonsense;
-        guided.light_sampling = LightSampling::mis;
-        const Repeats misled = repeat(tracer, map, guided);
-        EXPECT_LT(std::fabs(welch_t(plain, misled)), kCriticalT) << plain.mean() << " " << misled.mean();
-        // Without light samples nothing corrects a wrong density.
-        guided.light_sampling = LightSampling::bsdf_only;
-        const Repeats alone = repeat(tracer, map, guided);
-        EXPECT_LT(std::fabs(welch_t(plain, alone)), kCriticalT) << plain.mean() << " " << alone.mean();
-      }
-    }
+  struct Case {
+    bool glossy, layered;
+    DiffuseModel diffuse;
+  };
+  // Matte surfaces have neither gloss nor layers: the other three rooms of them have the same bits.
+  for (const Case& c : {Case{false, false, DiffuseModel::matte}, Case{false, false, DiffuseModel::lambert},
+                        Case{false, true, DiffuseModel::lambert}, Case{true, false, DiffuseModel::lambert},
+                        Case{true, true, DiffuseModel::lambert}}) {
+    const Scene scene = room(c.glossy, c.layered);
+    PathTracer tracer(scene, threads(2));
+    const SamplingMap map = uniform_map(24, 16, 32);
+    TraceSettings settings;
+    settings.diffuse = c.diffuse;
+    const Repeats plain = repeat(tracer, map, settings);
+    TraceSettings guided = settings;
+    guided.guiding_field = train(tracer, settings);
+    ASSERT_NE(guided.guiding_field, nullptr);
+    const Repeats with_field = repeat(tracer, map, guided);
+    EXPECT_LT(std::fabs(welch_t(plain, with_field)), kCriticalT) << plain.mean() << " " << with_field.mean();
+    EXPECT_LT(std::sqrt(with_field.variance_of_mean()), 0.01 * with_field.mean()) << "too noisy to mean anything";
+    EXPECT_NE(plain.means, with_field.means);
+    guided.guiding_field = nonsense;
+    guided.light_sampling = LightSampling::mis;
+    const Repeats misled = repeat(tracer, map, guided);
+    EXPECT_LT(std::fabs(welch_t(plain, misled)), kCriticalT) << plain.mean() << " " << misled.mean();
+    // Without light samples nothing corrects a wrong density.
+    guided.light_sampling = LightSampling::bsdf_only;
+    const Repeats alone = repeat(tracer, map, guided);
+    EXPECT_LT(std::fabs(welch_t(plain, alone)), kCriticalT) << plain.mean() << " " << alone.mean();
   }
 }
 

@@ -127,26 +127,49 @@ struct SlopeGrid {
   }
 };
 
+// By the midpoint rule with `n` points in azimuth. `whole` becomes false where part of the cell is no possible
+// direction.
 double cell_probability(const Model& bsdf, const Coordinates& map, const Vec3d& o, bool through, int x, int y, int n,
                         bool& whole) {
   // Broad lobes crowd at xi = 1, more closely the narrower the coordinates are, so the last column is integrated over
-  // log(1 - xi).
+  // log(1 - xi), in 192 steps. A step is made of shorter ones only where its ends say that the horizon passes through.
   const bool last = x == kSide - 1;
-  const int steps = last ? 24 * n : n;
+  const int steps = last ? 24 * 8 : n;
+  const int shorter = last ? n / 8 : 1;
+  const auto rest_at = [&](double at) { return last ? std::exp(-40 * at) / kSide : 1 - (x + at) / kSide; };
+  const auto find = [&](double rest, double turns, Vec3d& h, Vec3d& wi, double& stretch) {
+    h = map.normal_at((1 - rest) / rest, turns);
+    return map.direction(o, h, through, wi, stretch);
+  };
   double sum = 0;
-  for (int j = 0; j < steps; ++j) {
-    const double at = (j + 0.5) / steps;
-    const double rest = last ? std::exp(-40 * at) / kSide : 1 - (x + at) / kSide;
-    const double weight = last ? 40 * rest : 1.0 / kSide;
-    for (int k = 0; k < n; ++k) {
-      const Vec3d h = map.normal_at((1 - rest) / rest, (y + (k + 0.5) / n) / kSide);
+  for (int k = 0; k < n; ++k) {
+    const double turns = (y + (k + 0.5) / n) / kSide;
+    const auto density = [&](double at) {
+      const double rest = rest_at(at);
+      Vec3d h;
       Vec3d wi;
       double stretch = 0;
-      if (!map.direction(o, h, through, wi, stretch)) {
+      if (!find(rest, turns, h, wi, stretch)) {
         whole = false;
-        continue;
+        return 0.0;
       }
-      sum += static_cast<double>(bsdf.evaluate(to_float(wi)).pdf) * stretch * map.solid_angle(h) * weight;
+      const double weight = last ? 40 * rest : 1.0 / kSide;
+      return static_cast<double>(bsdf.evaluate(to_float(wi)).pdf) * stretch * map.solid_angle(h) * weight;
+    };
+    const auto is_possible = [&](double at) {
+      Vec3d h;
+      Vec3d wi;
+      double stretch = 0;
+      return find(rest_at(at), turns, h, wi, stretch);
+    };
+    bool possible = shorter > 1 && is_possible(0);
+    for (int j = 0; j < steps; ++j) {
+      const bool before = possible;
+      possible = shorter > 1 && is_possible((j + 1.0) / steps);
+      const int parts = possible == before ? 1 : shorter;
+      for (int i = 0; i < parts; ++i) {
+        sum += density((j + (i + 0.5) / parts) / steps) / parts;
+      }
     }
   }
   return sum / (static_cast<double>(n) * steps * kSide);

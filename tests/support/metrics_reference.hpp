@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/image_io.hpp"
+#include "gazetrace/fovvideovdp.hpp"
 #include "gazetrace/metrics.hpp"
 
 namespace gazetrace {
@@ -26,6 +27,20 @@ inline nlohmann::json read_reference_json(const std::string& name) {
 // 8-bit code values as floats.
 inline ImageRgb reference_code(const std::string& path) {
   return read_picture((metrics_reference_folder() / path).string()).rgb;
+}
+
+// The display of an entry.
+inline FovVideoVdpGeometry geometry_of(const nlohmann::json& values) {
+  const int width = values["resolution"][0];
+  const int height = values["resolution"][1];
+  const double distance_m = values["distance_m"];
+  if (values.contains("diagonal_size_inches")) {
+    return geometry_from_diagonal(width, height, values["diagonal_size_inches"], distance_m);
+  }
+  if (values.contains("fov_horizontal")) {
+    return geometry_from_horizontal_fov(width, height, values["fov_horizontal"], distance_m);
+  }
+  return geometry_from_diagonal_fov(width, height, values["fov_diagonal"], distance_m);
 }
 
 }  // namespace gazetrace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every per-picture number of the reference set: FLIP by its authors' program, SSIM by scikit-image, PSNR, MSE and
-// relMSE by numpy. The limits are those that the set's README suggests.
+// relMSE by numpy. The limits are those that the set's README suggests. Small pictures are metrics_test's, under the
+// sanitizers.
 #include <cmath>
 
 #include "gazetrace/output.hpp"
