@@ -14,6 +14,7 @@ from pathlib import Path
 
 from .command_line import Parser, add_json_option, check_output, say, with_json_joined, write
 from .errors import Error
+from .import_materials import settle
 
 DESCRIPTION = """Turn a scene of another program into glTF by Blender's importers: USD, Alembic, OBJ, FBX, PLY, STL and .blend. The
 video's frame 1 is the first frame of the file. What glTF cannot hold is listed. Blender's module is needed: 'pip install bpy'
@@ -31,12 +32,14 @@ READERS = {
 # What a kind of file does not hold, or Blender does not read of it.
 WITHOUT = {
     ".abc": "lights and materials",
-    ".obj": "cameras, lights and motion",
+    ".usd": "Blender's strength of gloss: surfaces reflect as their index of refraction says",
+    ".obj": "cameras, lights and motion; the gloss of other programs than Blender is a guess after Phong's model",
     ".fbx": "the size of area lights, which are taken for points",
     ".ply": "cameras, lights, materials and motion",
     ".stl": "cameras, lights, materials and motion",
 }
-READERS |= dict.fromkeys((".usda", ".usdc", ".usdz"), READERS[".usd"])
+for suffix_of_usd in (".usda", ".usdc", ".usdz"):
+    READERS[suffix_of_usd], WITHOUT[suffix_of_usd] = READERS[".usd"], WITHOUT[".usd"]
 
 
 def parse(words):
@@ -132,13 +135,13 @@ def place_cameras(scene, document):
     return lost
 
 
-def convert(scene, suffix, output):
+def convert(scene, suffix, output, lost_of_materials):
     """The bytes of the glTF file, of the world's picture where there is one, and what is lost."""
     from gazetrace_blender import world
     from gazetrace_blender.export import export_moving, left_out
     take = moments(scene)
     lost = [f"{suffix[1:].upper()} comes without {WITHOUT[suffix]}."] if suffix in WITHOUT else []
-    lost += left_out(scene)
+    lost += lost_of_materials + left_out(scene)
     picture = None
     with tempfile.TemporaryDirectory(prefix="gazetrace_") as made:
         path = Path(made) / "scene.glb"
@@ -167,7 +170,7 @@ def main(words):
         read(bpy, arguments.file)
         suffix = arguments.file.suffix.lower()
         scene = settle_frames(bpy, suffix)
-        content, picture, lost, document, take = convert(scene, suffix, output)
+        content, picture, lost, document, take = convert(scene, suffix, output, settle(bpy, arguments.file))
     finally:
         os.dup2(told, 1)
     write(output, content)

@@ -24,6 +24,11 @@ from exr_reader import Exr  # noqa: E402  a reader of the tests' own
 ABOVE = ["--env", "constant:1,1,1"]
 EYE = [*ABOVE, "--eye", "3,2,3", "--target", "0,0.5,0"]
 NONE = ["--env", "none"]
+# What a file states that differs from the scene of its name: USD has the gloss of its surfaces' index of refraction, and Blender
+# writes a temperature for every light.
+SAME = {"lit.usdc": "warm.glb", "others.usda": "gloss.glb", "others.usdz": "gloss.glb"}
+# Assimp writes metres as FBX's centimetres, and keys a thousand times later.
+SMALL = {"coloured.assimp.fbx": [*ABOVE, "--eye", "0.03,0.02,0.03", "--target", "0,0.005,0"]}
 # File, who wrote it, options of both renders.
 FILES = [("lit.blend", "bpy", NONE), ("lit.usdc", "bpy", NONE), ("others.usda", "usd-core", NONE), ("others.usdz", "usd-core", NONE),
          ("coloured.fbx", "bpy", ABOVE), ("coloured.assimp.fbx", "assimp", ABOVE), ("bare.abc", "bpy", ABOVE),
@@ -54,7 +59,8 @@ class Runs:
         pictures = []
         for seed in ("1", "2"):
             self.run("render", scene, "-o", "patch.exr", "--overwrite", "--size", "64x36", "--fps", "24", "--frames", "2", "--spp", "64",
-                     "--exr-compression", "zip", "--sampling", "uniform", "--filter", "none", "--diffuse", "lambert", "--seed", seed, "--quiet", *options)
+                     "--exr-compression", "zip", "--sampling", "uniform", "--filter", "none", "--accumulate", "off", "--diffuse", "lambert", "--seed", seed, "--quiet",
+                     *options)
             exr = Exr(self.folder / "patch.exr")
             pictures.append({name: [value for row in exr.channel(name)[10:26] for value in row[20:44]] for name in "RGB"})
         a, b = pictures
@@ -69,7 +75,7 @@ def angle_deg(a, b):
 
 def row(runs, name, by, options):
     told = json.loads(runs.run("import", name, "-o", "import.glb", "--overwrite", "--json", "-"))
-    same = f"{'lit' if name.startswith('others') else name.partition('.')[0]}.glb"
+    same = SAME.get(name, f"{name.partition('.')[0]}.glb")
     camera = "given"
     if "--eye" not in options:
         if not told["cameras"]:
@@ -80,7 +86,7 @@ def row(runs, name, by, options):
             turned = max(angle_deg(a["orientation_xyzw"], b["orientation_xyzw"]) for a, b in pairs)
             wide = max(abs(a["yfov_deg"] - b["yfov_deg"]) for a, b in pairs)
             camera = f"{far:.3f} mm, {turned:.4f} deg, {wide:.4f} deg"
-    ours, theirs = runs.patch("import.glb", *options), runs.patch(same, *options, *START)
+    ours, theirs = runs.patch("import.glb", *SMALL.get(name, options)), runs.patch(same, *options, *START)
     ratios = [f"{ours[name][0] / theirs[name][0]:.4f}" for name in "RGB"]
     error = max(math.hypot(ours[name][1], theirs[name][1]) / theirs[name][0] for name in "RGB")
     worst = max(abs(ours[name][0] - theirs[name][0]) / math.hypot(ours[name][1], theirs[name][1]) for name in "RGB")

@@ -7,6 +7,8 @@ stands on a floor, and a camera moves for five frames.
 lit.glb, lit.blend, lit.usdc              under a panel: an area light, in lit.glb a mesh that glows
 coloured.glb, coloured.obj, coloured.fbx  without a light
 bare.glb, bare.abc, bare.ply, bare.stl    without a light and without materials
+gloss.glb                                 lit.glb with the gloss of an index of refraction of 1.5, which USD's surfaces have by default
+warm.glb                                  gloss.glb under a light of 6500 K, which Blender writes into lit.usdc (white has no such number)
 """
 
 import math
@@ -24,6 +26,8 @@ from against_cycles import box, camera, matte, panel  # noqa: E402
 
 FRAMES = 5
 WATTS, WIDTH_M, HEIGHT_M = 80.0, 1.5, 1.0
+# UsdLux.BlackbodyTemperatureAsRgb(6500) of usd-core 26.11.
+OF_6500_K = (1.0433334, 0.98362446, 1.0346133)
 
 
 def checks(folder: Path) -> bpy.types.Image:
@@ -38,7 +42,7 @@ def checks(folder: Path) -> bpy.types.Image:
     return image
 
 
-def glowing_mesh() -> None:
+def glowing_mesh(colour: tuple) -> None:
     """What an area light is to a renderer: the same flux from the same surface."""
     bpy.ops.mesh.primitive_plane_add(size=1, location=(0.2, -0.3, 2.5), rotation=(math.pi, 0, 0))
     item = bpy.context.object
@@ -46,13 +50,13 @@ def glowing_mesh() -> None:
     material = matte("glow", (0, 0, 0))
     material.use_backface_culling = True
     surface = material.node_tree.nodes["Principled BSDF"]
-    surface.inputs["Emission Color"].default_value = (1, 1, 1, 1)
-    surface.inputs["Emission Strength"].default_value = WATTS / (math.pi * WIDTH_M * HEIGHT_M)
+    surface.inputs["Emission Color"].default_value = tuple(part / max(colour) for part in colour) + (1,)
+    surface.inputs["Emission Strength"].default_value = max(colour) * WATTS / (math.pi * WIDTH_M * HEIGHT_M)
     item.data.materials.append(material)
 
 
-def build(folder: Path, light: str, has_materials: bool) -> None:
-    """The scene; `light` is area, mesh or none."""
+def build(folder: Path, light: str, has_materials: bool, gloss: float = 0.0, colour: tuple = (1.0, 1.0, 1.0)) -> None:
+    """The scene; `light` is area, mesh or none, `gloss` the strength of what a dielectric of 1.5 reflects, 0.5 all of it."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.frame_start, scene.frame_end = 1, FRAMES
@@ -63,13 +67,15 @@ def build(folder: Path, light: str, has_materials: bool) -> None:
     texture = tree.nodes.new("ShaderNodeTexImage")
     texture.image = checks(folder)
     tree.links.new(texture.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
+    for item in (floor, block):
+        item.data.materials[0].node_tree.nodes["Principled BSDF"].inputs["Specular IOR Level"].default_value = gloss
     if not has_materials:
         for item in (floor, block):
             item.data.materials.clear()
     if light == "area":
         panel("panel", (0.2, -0.3, 2.5), WATTS, shape="RECTANGLE", size=WIDTH_M, size_y=HEIGHT_M)
     elif light == "mesh":
-        glowing_mesh()
+        glowing_mesh(colour)
     eye = camera((3, -3, 2), (math.radians(65), 0, math.radians(45)), 35)
     scenes.key(eye, "location", 1, (3, -3, 2))
     scenes.key(eye, "location", FRAMES, (3.4, -2.6, 2))
@@ -86,6 +92,9 @@ def main(folder: Path) -> None:
     gltf = {"export_cameras": True, "export_apply": True, "export_animation_mode": "SCENE", "export_anim_slide_to_zero": False}
     build(folder, "mesh", True)
     bpy.ops.export_scene.gltf(filepath=place["lit"] + ".glb", **gltf)
+    for name, colour in (("gloss", (1, 1, 1)), ("warm", OF_6500_K)):
+        build(folder, "mesh", True, 0.5, colour)
+        bpy.ops.export_scene.gltf(filepath=str(folder / f"{name}.glb"), **gltf)
     build(folder, "none", True)
     bpy.ops.export_scene.gltf(filepath=place["coloured"] + ".glb", **gltf)
     bpy.ops.wm.obj_export(filepath=place["coloured"] + ".obj")

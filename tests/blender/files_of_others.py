@@ -117,8 +117,8 @@ def write_by_trimesh(folder: Path) -> None:
 
 
 def write_by_assimp(folder: Path) -> None:
-    for suffix in ("fbx", "obj"):
-        subprocess.run(["assimp", "export", folder / "coloured.glb", folder / f"coloured.assimp.{suffix}"], check=True, capture_output=True)
+    for suffix, form in (("fbx", "-ffbxa"), ("obj", "-fobj")):  # its binary FBX is damaged by 5.2
+        subprocess.run(["assimp", "export", folder / "coloured.glb", folder / f"coloured.assimp.{suffix}", form], check=True, capture_output=True)
 
 
 def main(folder: Path) -> None:

@@ -46,7 +46,58 @@ ABOVE = ["--env", "constant:1,1,1"]
 EYE = [*ABOVE, "--eye", "3,2,3", "--target", "0,0.5,0"]
 IMPORTS = {"lit.blend": ["--env", "none"], "lit.usdc": ["--env", "none"], "coloured.fbx": ABOVE, "coloured.obj": EYE, "bare.abc": ABOVE,
            "bare.ply": EYE, "bare.stl": EYE}
-LOST = {"obj": ["without cameras"], "fbx": ["area lights"], "abc": ["without lights"], "ply": ["without cameras"]}
+# What the file states, where it is not the scene of its name (tests/blender/files.py).
+SAME = {"lit.usdc": "warm.glb"}
+LOST = {"usdc": ["strength of gloss", "6500 K"], "obj": ["without cameras"], "fbx": ["area lights"], "abc": ["without lights"], "ply": ["without cameras"]}
+
+
+# A triangle with a material.
+FBX = """; FBX 7.4.0 project file
+FBXHeaderExtension: {{
+\tFBXHeaderVersion: 1003
+\tFBXVersion: 7400
+}}
+Creator: "by hand"
+Objects: {{
+\tGeometry: 1, "Geometry::g", "Mesh" {{
+\t\tVertices: *9 {{
+\t\t\ta: 0,0,0,1,0,0,0,1,0
+\t\t}}
+\t\tPolygonVertexIndex: *3 {{
+\t\t\ta: 0,1,-3
+\t\t}}
+\t\tLayerElementMaterial: 0 {{
+\t\t\tMappingInformationType: "AllSame"
+\t\t\tReferenceInformationType: "IndexToDirect"
+\t\t\tMaterials: *1 {{
+\t\t\t\ta: 0
+\t\t\t}}
+\t\t}}
+\t\tLayer: 0 {{
+\t\t\tLayerElement: {{
+\t\t\t\tType: "LayerElementMaterial"
+\t\t\t\tTypedIndex: 0
+\t\t\t}}
+\t\t}}
+\t}}
+\tModel: 2, "Model::o", "Mesh" {{
+\t\tVersion: 232
+\t}}
+\tMaterial: 3, "Material::m", "" {{
+\t\tVersion: 102
+\t\tShadingModel: "{model}"
+\t\tProperties70: {{
+\t\t\tP: "DiffuseColor", "Color", "", "A", 0.5, 0.5, 0.5
+\t\t\tP: "SpecularFactor", "double", "Number", "", {factor}
+\t\t}}
+\t}}
+}}
+Connections: {{
+\tC: "OO",2,0
+\tC: "OO",1,2
+\tC: "OO",3,2
+}}
+"""
 
 
 @unittest.skipUnless(HOSTS, "neither Blender nor a Python with bpy is installed (GAZETRACE_BPY_PYTHON names one)")
@@ -101,7 +152,7 @@ class Blender(harness.CliTest):
                     self.assertIn(sentence, " ".join(told["lost"]))
                 moves = "--eye" not in options
                 self.assertEqual((told["frames"], len(told["cameras"])), (5, 1) if moves else (1, 0))
-                same = f"{name.partition('.')[0]}.glb"
+                same = SAME.get(name, f"{name.partition('.')[0]}.glb")
                 # Blender's own exporter has frame f at f / 24 s, and the import in the middle of the video's frame f.
                 start = ["--start", "20833333ns", "--camera-extrapolation", "hold"]
                 if moves:
@@ -110,26 +161,45 @@ class Blender(harness.CliTest):
                         self.assertAlmostEqual(a["yfov_deg"], b["yfov_deg"], places=3)
                         for x, y in zip(a["position_m"] + a["orientation_xyzw"], b["position_m"] + b["orientation_xyzw"]):
                             self.assertAlmostEqual(x, y, delta=2e-4)
-                (a, noise_a), (b, noise_b) = self.patch("i.glb", *options), self.patch(same, *options, *start)
-                print(name, a, noise_a, b, noise_b)
-                self.assertGreater(a, 0.05)
-                self.assertLess(abs(a - b), 4 * math.hypot(noise_a, noise_b))
+                ours, theirs = self.patch("i.glb", *options), self.patch(same, *options, *start)
+                for channel in "RGB":
+                    (a, noise_a), (b, noise_b) = ours[channel], theirs[channel]
+                    print(name, channel, a, noise_a, b, noise_b)
+                    self.assertGreater(a, 0.05)
+                    self.assertLess(abs(a - b), 4 * math.hypot(noise_a, noise_b))
+
+    @unittest.skipUnless("bpy" in HOSTS, "no Python with bpy is installed")
+    def test_an_import_lists_pictures_that_are_not_there_and_gloss_that_is_guessed(self):
+        environment = {"GAZETRACE_BPY_PYTHON": HOSTS["bpy"][0]}
+        self.write("s.obj", b"mtllib s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n")
+        self.write("s.mtl", b"newmtl m\nKd 1 1 1\nmap_Kd -s 1 1 1 gone.png\n")
+        told = json.loads(self.run_ok("import", "s.obj", "-o", "s.glb", "--json", environment=environment, alone=True).stdout)
+        self.assertIn("gone.png", " ".join(told["lost"]))
+        for name, model, factor, gloss, sentence in (("lambert", "lambert", 1, 0, False), ("dull", "phong", 0, 0, False), ("shiny", "phong", 0.3, 1, True)):
+            with self.subTest(name):
+                self.write("s.fbx", FBX.format(model=model, factor=factor).encode())
+                told = json.loads(self.run_ok("import", "s.fbx", "-o", "s.glb", "--overwrite", "--json", environment=environment, alone=True).stdout)
+                self.assertEqual("guess" in " ".join(told["lost"]), sentence, told)
+                data = (self.folder / "s.glb").read_bytes()
+                document = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
+                self.assertEqual(document["materials"][0].get("extensions", {}).get("KHR_materials_specular", {}).get("specularFactor", 1), gloss)
 
     def cameras(self, scene, *options):
         told = self.run_ok("plan", scene, "--size", "64x36", "--fps", "24", "--frames", "1-5", *options, "--json", "-").stdout
         return [frame["camera"] for frame in json.loads(told)["frames"]]
 
     def patch(self, scene, *options):
-        """The mean green light of a patch, and its standard error, by two renders."""
-        values = []
+        """The mean light of a patch, and its standard error, for red, green and blue, by two renders."""
+        pictures = []
         for seed in ("1", "2"):
             self.run_ok("render", scene, "-o", "patch.exr", "--overwrite", "--size", "64x36", "--fps", "24", "--frames", "2", "--spp", "64",
-                        "--exr-compression", "zip", "--sampling", "uniform", "--filter", "none", "--diffuse", "lambert", "--seed", seed, *options)
-            green = Exr(self.folder / "patch.exr").channel("G")
-            values.append([value for row in green[10:26] for value in row[20:44]])
-        a, b = values
-        noise = math.sqrt(sum((x - y) ** 2 for x, y in zip(a, b))) / 2 / len(a)
-        return (sum(a) + sum(b)) / 2 / len(a), noise
+                        "--exr-compression", "zip", "--sampling", "uniform", "--filter", "none", "--accumulate", "off", "--diffuse", "lambert", "--seed", seed,
+                        *options)
+            exr = Exr(self.folder / "patch.exr")
+            pictures.append({name: [value for row in exr.channel(name)[10:26] for value in row[20:44]] for name in "RGB"})
+        a, b = pictures
+        return {name: (math.fsum(a[name] + b[name]) / 2 / len(a[name]),
+                       math.sqrt(math.fsum((x - y) ** 2 for x, y in zip(a[name], b[name]))) / 2 / len(a[name])) for name in "RGB"}
 
     def test_the_add_on(self):
         for host in HOSTS:
