@@ -10,7 +10,7 @@ import bpy
 from .camera import Projection
 from .frames import FrameRange
 from .glb import Glb
-from .lights import add_area_lights, lost_of_lights
+from .lights import add_area_lights, lost_of_lights, set_suns
 from .motion import animate, from_the_roots, scale_times, world_matrices
 from .refusal import Refusal
 
@@ -67,6 +67,7 @@ def export_moving(scene: bpy.types.Scene, frames: FrameRange, path: Path) -> Glb
     glb = Glb(path)
     drop_pointers(glb.document)
     scale_times(glb, scene.render.fps_base, frames.seconds(frames.first) - float(frames.first / frames.fps))
+    set_suns(glb)
     add_area_lights(glb, scene, matrices, frames.shown)
     animate(glb, matrices, frames)
     return glb

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Area lights as meshes that shine, since glTF has lights without a size only: the same flux from the same surface."""
+"""Area lights as meshes that shine, since glTF has lights without a size only: the same flux from the same surface. Suns
+with the strength that Cycles gives them."""
 
 import math
 
@@ -30,6 +31,17 @@ def add_area_lights(glb: Glb, scene: bpy.types.Scene, matrices: dict[str, np.nda
         if max(radiance) > 0:
             matrices[node_name] = matrices[item.name]
             append(glb, node_name, triangles, shown, radiance)
+
+
+def set_suns(glb: Glb) -> None:
+    """Cycles multiplies a sun's strength by that of its node; Blender's exporter takes the node's alone where there is one,
+    and 5.2 gives one to every sun."""
+    for entry in glb.document.get("extensions", {}).get("KHR_lights_punctual", {}).get("lights", []):
+        sun = bpy.data.lights.get(entry.get("name", ""))
+        if entry["type"] == "directional" and sun is not None:
+            nodes = sun.node_tree.nodes if sun.use_nodes and sun.node_tree else ()
+            node = next((node.inputs["Strength"].default_value for node in nodes if node.type == "EMISSION"), 1.0)
+            entry["intensity"] = sun.energy * 2 ** getattr(sun, "exposure", 0.0) * node
 
 
 def triangles_of(light: bpy.types.AreaLight) -> np.ndarray:

@@ -215,7 +215,7 @@ class Runs(AddOnTest):
             self.assertEqual(editor.image, image)
             # Blender shows the file of number frame - frame_start + 1 + frame_offset.
             self.assertEqual((user.frame_offset + 1, user.frame_start, user.frame_duration), (11, 11, 5))
-        names = sorted(path.name for path in (self.folder / "gazetrace").glob("frame.*"))
+        names = sorted(path.name for path in (self.folder / "gazetrace").glob("frame.[0-9]*"))
         self.assertEqual(names, [f"frame.{n:04d}.{end}" for n in range(11, 16) for end in ("exr", "png")])
 
     def test_the_view_is_that_of_the_scene(self):

@@ -174,8 +174,12 @@ class Talk(harness.CliTest):
             self.assertAlmostEqual(screen["pixels_per_degree"], numbers[2])
             self.assertEqual((screen["headset"]["field_deg"], screen["headset"]["rate_hz"]), numbers[3:])
             self.assertTrue(screen["headset"]["source"])
-        # FovVideoVDP's htc_vive_pro: a flat screen with 110 degrees over its diagonal.
+        # HTC's page of specifications has pixels and rate; FovVideoVDP's htc_vive_pro is a flat screen of 133.3 cd/m2 with 110
+        # degrees over its diagonal: sqrt(1440^2 + 1600^2) / (2 tan 55 deg) = 753.63 pixels a radian, 13.153 a degree.
         vive = screens["vive-pro-eye"]
+        self.assertEqual((vive["width_px"], vive["height_px"], vive["luminance_cd_m2"]), (1440, 1600, 133.3))
+        self.assertEqual((vive["headset"]["field_deg"], vive["headset"]["rate_hz"]), ([110], 90))
+        self.assertAlmostEqual(vive["pixels_per_degree"], 13.153, places=3)
         diagonal_cm = math.hypot(vive["width_cm"], vive["height_cm"])
         self.assertAlmostEqual(2 * math.degrees(math.atan(diagonal_cm / 2 / vive["distance_cm"])), 110)
         self.run_ok("plan", "box.gltf", "--size", "64x68", "--screen", "quest-3", "--gaze-at", "0.5,0.5")

@@ -97,6 +97,12 @@ class Shots(harness.CliTest):
                         self.assertAlmostEqual(rows[y][x][c], 255 * CARD[c], delta=12, msg=(x, y))
         self.assert_refused(["render", "card.gltf", "--size", "16x8", "--alpha", "-o", "card.jpg"], ["card.jpg", "alpha", ".png"])
 
+    def test_exr_is_compressed_by_zip_unless_said_otherwise(self):
+        """By the number in the file's header: of OpenEXR's methods 0 is none and 3 is zip."""
+        for number, options in ((3, []), (0, ["--exr-compression", "none"])):
+            self.run_ok("render", "card.gltf", "--size", "16x8", "--spp", "1", *options, *UNIFORM, "-o", "f.exr")
+            self.assertEqual(Exr(self.folder / "f.exr").attributes["compression"][1], bytes([number]), options)
+
     def test_acescg_is_converted_and_stated(self):
         arguments = ["box.gltf", "--size", "32x18", "--spp", "2", "--aov", "albedo,depth,diffuse_direct", *UNIFORM]
         plain = self.picture("plain.exr", *arguments)
