@@ -13,6 +13,11 @@ target_compile_options(gazetrace_flags INTERFACE
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(gazetrace_flags INTERFACE "$<$<CONFIG:Release>:-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-array-bounds;-Wno-maybe-uninitialized>")
 endif()
+# GCC collects its own garbage from 128 MB on: from 400 MB on it takes an eighth less of the time (unity_job_1 8.9 -> 7.9
+# CPU s) and a fifth more memory, 570 MB.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(gazetrace_flags INTERFACE --param=ggc-min-heapsize=400000)
+endif()
 if(GAZETRACE_WERROR)
   target_compile_options(gazetrace_flags INTERFACE -Werror)
 endif()
