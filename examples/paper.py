@@ -73,7 +73,7 @@ class Program:
         path, eye, target, yfov, _, _ = SCENES[scene]
         place = {name: ",".join(map(repr, values)) for name, values in (("eye", eye), ("target", target), ("gaze", gaze_of(scene)))}
         return [self.data / path, "--env", self.data / "kiara_1_dawn_1k.hdr", f"--eye={place['eye']}", f"--target={place['target']}",
-                "--yfov", yfov, "--screen", "paper", "--size", size, "--gaze-at", place["gaze"], "--frames", 1]
+                "--yfov", yfov, "--screen", "paper", "--size", size, "--gaze-at", place["gaze"], "--frames", 1, "--allow-outside"]
 
     def render(self, scene, size, *options):
         """The row of the frame's timing."""
