@@ -150,10 +150,9 @@ struct GazeTrial {
   std::int32_t block = 0;  // number of the block of the recording that it begins in, from 1; 0: in none
 };
 
-struct GazeLog {
+// The statements of a recording beside its gaze. They stay as they are however its numbers are interpreted.
+struct GazeRecord {
   GazeKind kind = GazeKind::screen;
-  // Times increase. There is one gaze for each time, made from both eyes as `Conventions::eye` says.
-  std::vector<GazeSample> samples;
   std::string source;            // the path as given
   std::string format;            // a name of `gaze_formats()`
   double format_confidence = 1;  // 0..1, how sure the sniffing was; 1 where the format was named
@@ -165,27 +164,30 @@ struct GazeLog {
   double nominal_rate_hz = 0;              // 0: not stated
   // A frame log writes the newest sample once in each frame: the age of its samples is then unknown rather than zero.
   bool sample_age_unknown = false;
-
-  std::vector<BothEyes> eyes;       // one for each sample where the log has both eyes; else empty
-  std::vector<EyeOrigins> origins;  // empty, or one for each sample
-  std::vector<HeadPose> head;       // empty, or the head's poses with increasing times
-  std::vector<GazeEvent> events;    // in the order of the file
+  std::vector<EyeOrigins> origins;
+  std::vector<HeadPose> head;
+  std::vector<GazeEvent> events;  // in the order of the file
   std::vector<GazeCalibration> calibrations;
   std::optional<Eye> stated_eye;     // of a converted log: the eye that was chosen when it was converted
   std::optional<GazeDevice> device;  // where the log states it
+  std::vector<GazeWitness> witnesses;
+  // The recordings of the file, or the blocks of its only one, in the order of the file; empty where there is but one.
+  std::vector<GazeRecording> recordings;
+  std::size_t recording = 0;  // which of them these are, counted from 1; 0: all that the file has
+  Warnings warnings;
+};
+
+// `origins` are empty, or one for each sample; `head` is empty, or has poses with increasing times.
+struct GazeLog : GazeRecord {
+  // Times increase. There is one gaze for each time, made from both eyes as `Conventions::eye` says.
+  std::vector<GazeSample> samples;
+  std::vector<BothEyes> eyes;  // one for each sample where the log has both eyes; else empty
   // The conventions under which the numbers of the file were interpreted, and the same in words for people, with the
   // evidence for each.
   Conventions conventions;
   std::vector<GazeFact> facts;
-  Warnings warnings;
-
   GazeOrder order;
-  std::vector<GazeWitness> witnesses;
   std::optional<GazeTrial> trial;  // where the log was cut to one
-
-  // The recordings of the file, or the blocks of its only one, in the order of the file; empty where there is but one.
-  std::vector<GazeRecording> recordings;
-  std::size_t recording = 0;  // which of them this log holds, counted from 1; 0: all that the file has
 };
 
 // Whether each sample has its two eyes.

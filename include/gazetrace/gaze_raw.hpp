@@ -41,26 +41,12 @@ struct RawFault {
   std::string found;    // the same problem as a finding of an inspection
 };
 
-struct RawGaze {
-  GazeKind kind = GazeKind::screen;  // whether rows hold places on a display or on a picture, or directions
-  RawRows rows;                      // in the order of the file
-  std::string source, format;
-  double format_confidence = 1;
-  std::string clock, pupil_unit;
-  double nominal_rate_hz = 0;
-  bool sample_age_unknown = false;
-  std::optional<DisplayGeometry> recording_geometry;
-  std::optional<Vec2d> pixels_per_degree;
+// `kind` says whether rows hold places on a display or on a picture, or directions. `origins` are in the file's axes
+// and need not be aligned with the rows; `head` is in gazetrace's axes. `witnesses` have the signs that the format
+// defines: `interpret` turns them together with the gaze.
+struct RawGaze : GazeRecord {
+  RawRows rows;                     // in the order of the file
   std::optional<Vec2d> picture_px;  // size of the scene camera's picture
-  std::optional<Eye> stated_eye;
-  std::optional<GazeDevice> device;
-  // In the file's axes; they need not be aligned with the rows.
-  std::vector<EyeOrigins> origins;
-  std::vector<HeadPose> head;  // in gazetrace's axes
-  std::vector<GazeEvent> events;
-  std::vector<GazeCalibration> calibrations;
-  // With the signs that the format defines; `interpret` turns them together with the gaze.
-  std::vector<GazeWitness> witnesses;
 
   // Statements of the format, the header, a sidecar or the named columns about the numbers. `automatic`: none of them
   // does.
@@ -68,11 +54,8 @@ struct RawGaze {
   // Where the display's corner moves between the rows of the file, in the order of the rows. Before the first of these
   // rows it is at `Conventions::corner`; if this is empty, it is there for all rows.
   std::vector<CornerFromRow> corners;
-  // The recordings of the file, or the blocks of its only one, and where each of them begins or goes on, in the order
-  // of the lines. Both are empty where the file holds one only.
-  std::vector<GazeRecording> recordings;
+  // Where each of the recordings begins or goes on, in the order of the lines.
   std::vector<RecordingFromLine> recording_lines;
-  std::size_t recording = 0;  // as GazeLog::recording: the other recordings' rows have been left out
   // Degrees that become directions grow upwards, for any stated or guessed origin. If this is false, they
   // grow downwards where they count from the top left.
   bool directions_grow_up = false;
@@ -86,7 +69,6 @@ struct RawGaze {
   std::vector<GazeFact> notes;  // other statements of the file, in words
   std::vector<RawFault> faults;
   Warnings damages;  // signs that the file is not whole; no option repairs it
-  Warnings warnings;
 };
 
 // Reads a file, which may be packed by gzip, or the recording in a folder. `options` name the format, the columns and

@@ -50,6 +50,15 @@ class RawRows {
     }
     *this = std::move(kept);
   }
+  // Replaces each row by change(index, row).
+  template <class Change>
+  void change_each(const Change& change) {
+    RawRows changed;
+    for (std::size_t i = 0; i < size(); ++i) {
+      changed.push_back(change(i, (*this)[i]));
+    }
+    *this = std::move(changed);
+  }
   // Rows of one time stay in the order in which they are.
   void sort_by_time();
   void set_validity(std::size_t i, GazeValidity validity);

@@ -8,6 +8,7 @@
 #include "compare/eccentricity_bands.hpp"
 #include "compare/score_series.hpp"
 #include "compare/sequence_metric.hpp"
+#include "core/named.hpp"
 #include "gazetrace/compare.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/fovvideovdp.hpp"
@@ -24,14 +25,7 @@ struct FrameGroup {
 };
 
 MetricInfo known_metric(const std::string& name) {
-  std::vector<std::string> names;
-  for (const MetricInfo& info : comparison_metrics()) {
-    if (info.name == name) {
-      return info;
-    }
-    names.push_back(info.name);
-  }
-  throw Error(ErrorKind::usage, "`metrics`", unknown_name_message("metric", name, names));
+  return find_named(comparison_metrics(), name, "metric", "`metrics`");
 }
 
 }  // namespace

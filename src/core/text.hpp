@@ -53,6 +53,9 @@ NumberStatus scaled_integer(std::string_view text, int exponent, std::int64_t& v
 // The double nearest to a finite number with a decimal point or comma; empty where the text is anything else.
 std::optional<double> number_from(std::string_view text);
 
+// The whole number that digits alone write; empty where the text is anything else, or does not fit.
+std::optional<std::size_t> count_from(std::string_view text);
+
 // The power of ten from a unit of time to nanoseconds: "ns", "us", "μs" (either mu), "ms", "s" in their common
 // spellings, and "100ns"; empty for anything else.
 std::optional<int> time_exponent(std::string_view unit);

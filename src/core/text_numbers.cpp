@@ -157,6 +157,12 @@ std::optional<double> number_from(std::string_view text) {
   return good ? std::optional(value) : std::nullopt;
 }
 
+std::optional<std::size_t> count_from(std::string_view text) {
+  std::size_t count = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), count);
+  return code == std::errc() && end == text.data() + text.size() ? std::optional(count) : std::nullopt;
+}
+
 std::optional<int> time_exponent(std::string_view unit) {
   struct Spelling {
     std::string_view text;

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/named.hpp"
 #include "gazetrace/density.hpp"
-#include "gazetrace/error.hpp"
 
 namespace gazetrace {
 
@@ -22,19 +22,5 @@ std::vector<double> parse_values(std::string_view text, const std::vector<NamedP
                                  const std::string& place);
 // ":slope=0.03" for what is not as published; empty where all is.
 std::string values_text(const std::vector<double>& values, const std::vector<NamedParameter>& parameters);
-
-// The one of `infos`, each with a `name`, that is called so. Error(usage, place) that names the nearest.
-template <class Infos>
-const auto& find_named(const Infos& infos, std::string_view name, const std::string& kind, const std::string& place,
-                       const std::string& remedy = {}) {
-  std::vector<std::string> known;
-  for (const auto& info : infos) {
-    if (info.name == name) {
-      return info;
-    }
-    known.emplace_back(info.name);
-  }
-  throw Error(ErrorKind::usage, place, unknown_name_message(kind, name, known), remedy);
-}
 
 }  // namespace gazetrace

@@ -8,32 +8,17 @@
 #include "gazetrace/gaze_events.hpp"
 
 namespace gazetrace {
-namespace {
-
-// Poses at increasing times, which are also asked for at increasing times.
-class HeadWalker {
- public:
-  explicit HeadWalker(const std::vector<HeadPose>& head) : head_(head) {}
-
-  Quatd orientation(std::int64_t t_ns) {
-    while (at_ + 1 < head_.size() && head_[at_ + 1].t_ns <= t_ns) {
-      ++at_;
-    }
-    const HeadPose& a = head_[at_];
-    if (at_ + 1 == head_.size() || t_ns <= a.t_ns) {
-      return a.orientation;
-    }
-    const HeadPose& b = head_[at_ + 1];
-    return slerp(a.orientation, b.orientation,
-                 static_cast<double>(t_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns));
+Quatd HeadWalker::orientation(std::int64_t t_ns) {
+  while (at_ + 1 < head_.size() && head_[at_ + 1].t_ns <= t_ns) {
+    ++at_;
   }
-
- private:
-  const std::vector<HeadPose>& head_;
-  std::size_t at_ = 0;
-};
-
-}  // namespace
+  const HeadPose& a = head_[at_];
+  if (at_ + 1 == head_.size() || t_ns <= a.t_ns) {
+    return a.orientation;
+  }
+  const HeadPose& b = head_[at_ + 1];
+  return slerp(a.orientation, b.orientation, static_cast<double>(t_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns));
+}
 
 Vec3d between_directions(const Vec3d& a, const Vec3d& b, double s) {
   const double angle = angle_between_rad(a, b);

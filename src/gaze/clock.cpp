@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "core/text.hpp"
+#include "gaze/angles.hpp"
 #include "gazetrace/gaze.hpp"
 
 namespace gazetrace {
@@ -64,26 +64,13 @@ std::int64_t time_of_message(const GazeLog& log, std::string_view text) {
   // "IMAGE ON#2" is the second one of them.
   std::size_t nth = 0;
   if (const std::size_t hash = text.rfind('#'); hash != std::string_view::npos) {
-    const std::string_view digits = text.substr(hash + 1);
-    const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), nth);
-    if (code == std::errc() && end == digits.data() + digits.size() && nth > 0) {
-      text = text.substr(0, hash);
-    } else {
-      nth = 0;
-    }
+    nth = count_from(text.substr(hash + 1)).value_or(0);
+    text = nth > 0 ? text.substr(0, hash) : text;
   }
-  const auto find = [&](const auto& fits) {
-    std::vector<const GazeEvent*> found;
-    for (const GazeEvent& event : log.events) {
-      if (fits(std::string_view(event.text))) {
-        found.push_back(&event);
-      }
-    }
-    return found;
-  };
-  std::vector<const GazeEvent*> found = find([&](std::string_view t) { return trim(t) == text; });
-  if (found.empty()) {
-    found = find([&](std::string_view t) { return !text.empty() && t.find(text) != std::string_view::npos; });
+  std::vector<const GazeEvent*> found =
+      events_in_time(log, [&](const GazeEvent& event) { return trim(event.text) == text; });
+  if (found.empty() && !text.empty()) {
+    found = events_in_time(log, [&](const GazeEvent& event) { return event.text.find(text) != std::string::npos; });
   }
   if (found.empty()) {
     throw Error(ErrorKind::input, log.source, fmt::format("has no message '{}' to anchor its clock at", text),
@@ -93,8 +80,6 @@ std::int64_t time_of_message(const GazeLog& log, std::string_view text) {
     throw Error(ErrorKind::input, log.source, fmt::format("has only {} messages with '{}'", found.size(), text));
   }
   if (nth > 0) {
-    std::stable_sort(found.begin(), found.end(),
-                     [](const GazeEvent* a, const GazeEvent* b) { return a->begin_ns < b->begin_ns; });
     return found[nth - 1]->begin_ns;
   }
   if (found.size() > 1) {

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "core/enum_name.hpp"
 #include "gaze/angles.hpp"
-#include "gaze/unseen.hpp"
 #include "gazetrace/gaze.hpp"
 
 namespace gazetrace {
@@ -20,6 +18,13 @@ __extension__ using Int128 = __int128;
 [[noreturn]] void beyond_int64() {
   throw Error(ErrorKind::usage, "", "a time of the gaze log would lie beyond int64 nanoseconds",
               "check `gaze-start`, `gaze-offset` and `gaze-scale`");
+}
+
+std::int64_t narrowed(Int128 t_ns) {
+  if (t_ns != static_cast<std::int64_t>(t_ns)) {
+    beyond_int64();
+  }
+  return static_cast<std::int64_t>(t_ns);
 }
 
 Int128 floor_divide(Int128 a, Int128 b) {  // b > 0
@@ -292,11 +297,7 @@ std::int64_t log_time_ns(const GazeLog& log, const GazeMapping& mapping, std::in
                 "give `gaze-scale` as video seconds per log second, near 1");
   }
   const std::int64_t event = mapping.event_ns.value_or(log.samples.empty() ? 0 : log.samples.front().t_ns);
-  const Int128 t = event + divide_by_scale(Int128{t_video_ns} - mapping.offset_ns, mapping.scale);
-  if (t > std::numeric_limits<std::int64_t>::max() || t < std::numeric_limits<std::int64_t>::min()) {
-    beyond_int64();
-  }
-  return static_cast<std::int64_t>(t);
+  return narrowed(event + divide_by_scale(Int128{t_video_ns} - mapping.offset_ns, mapping.scale));
 }
 
 std::int64_t video_time_ns(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_log_ns) {
@@ -315,11 +316,7 @@ std::int64_t video_time_ns(const GazeLog& log, const GazeMapping& mapping, std::
     }
     scaled = static_cast<Int128>(product);
   }
-  const Int128 t = scaled + mapping.offset_ns;
-  if (t > std::numeric_limits<std::int64_t>::max() || t < std::numeric_limits<std::int64_t>::min()) {
-    beyond_int64();
-  }
-  return static_cast<std::int64_t>(t);
+  return narrowed(scaled + mapping.offset_ns);
 }
 
 GazeAtTime gaze_at(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_video_ns,

@@ -4,12 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <limits>
 #include <map>
 #include <utility>
 
 #include "core/text.hpp"
-#include "gaze/trial_table.hpp"
+#include "gaze/angles.hpp"
+#include "gazelog/table.hpp"
 
 namespace gazetrace {
 namespace {
@@ -44,15 +45,9 @@ const GazeTrial* block_at(const std::vector<GazeTrial>& blocks, std::int64_t t_n
 }
 
 std::vector<const GazeEvent*> messages_of(const GazeLog& log, const std::string& pattern) {
-  std::vector<const GazeEvent*> messages;
-  for (const GazeEvent& event : log.events) {
-    if (event.type == GazeEventType::message && fits_pattern(event.text, pattern)) {
-      messages.push_back(&event);
-    }
-  }
-  std::stable_sort(messages.begin(), messages.end(),
-                   [](const GazeEvent* a, const GazeEvent* b) { return a->begin_ns < b->begin_ns; });
-  return messages;
+  return events_in_time(log, [&](const GazeEvent& event) {
+    return event.type == GazeEventType::message && fits_pattern(event.text, pattern);
+  });
 }
 
 std::vector<GazeTrial> trials_by_messages(const GazeLog& log, const TrialRules& rules,
@@ -82,6 +77,52 @@ std::vector<GazeTrial> trials_by_messages(const GazeLog& log, const TrialRules& 
       trial.end_ns = std::min(trial.end_ns, (*end)->begin_ns);
     }
   }
+  return trials;
+}
+
+// The rows of a table of trials in the order of time, see TrialRules::table; numbers and blocks are not filled in.
+std::vector<GazeTrial> read_trial_table(const std::string& path) {
+  const GazeFile file{path, read_text_file(path)};
+  const DelimitedTable table = open_table(file);
+  const auto fail_header = [&](const std::string& problem) {
+    throw Error(ErrorKind::input, place_of(file, std::max<std::int64_t>(table.header_line, 1)), problem,
+                "name its columns onset and duration (seconds), or onset_ns and offset_ns, on the clock of the log");
+  };
+  if (table.headings.empty()) {
+    fail_header("is empty");
+  }
+  const auto name = table.find_any({"name", "trial_type"});
+  const auto onset = table.find("onset");  // or onset_ns, as their units tell
+  const auto offset = table.find("offset");
+  const auto duration = table.find("duration");
+  if (!onset || (!offset && !duration)) {
+    fail_header("names no columns onset and duration (seconds), nor onset_ns and offset_ns");
+  }
+  std::vector<GazeTrial> trials;
+  TableRows rows(file, table, table.headings.size());
+  const auto time = [&](std::size_t column) {
+    return rows.time_ns(column, {time_exponent(table.headings[column].unit).value_or(9), 0});
+  };
+  while (rows.next()) {
+    GazeTrial trial;
+    trial.name = rows.cell(name);
+    trial.begin_ns = time(*onset);
+    const bool fits = offset || !__builtin_add_overflow(trial.begin_ns, time(*duration), &trial.end_ns);
+    trial.end_ns = offset ? time(*offset) : trial.end_ns;
+    if (fits && trial.end_ns < trial.begin_ns) {
+      rows.fail("the trial ends before it begins", "mend the row");
+    }
+    // As of a log: durations are taken everywhere, and half of what an int64 holds leaves room for their sums.
+    std::int64_t duration_ns = 0;
+    if (!fits || __builtin_sub_overflow(trial.end_ns, trial.begin_ns, &duration_ns) ||
+        duration_ns > std::numeric_limits<std::int64_t>::max() / 2) {
+      rows.fail("the trial lasts more than a hundred years",
+                "give onset and duration in seconds, or onset_ns and offset_ns");
+    }
+    trials.push_back(std::move(trial));
+  }
+  std::stable_sort(trials.begin(), trials.end(),
+                   [](const GazeTrial& a, const GazeTrial& b) { return a.begin_ns < b.begin_ns; });
   return trials;
 }
 
@@ -195,14 +236,12 @@ std::vector<GazeTrial> find_trials(const GazeLog& log) {
 }
 
 const GazeTrial& trial_by_name(const std::vector<GazeTrial>& trials, std::string_view which) {
-  std::size_t number = 0;
-  const auto [end, code] = std::from_chars(which.data(), which.data() + which.size(), number);
-  if (code == std::errc() && end == which.data() + which.size()) {
-    if (number < 1 || number > trials.size()) {
+  if (const auto number = count_from(which)) {
+    if (*number < 1 || *number > trials.size()) {
       throw Error(ErrorKind::usage, "`trial`", fmt::format("there is no trial {}", which),
                   fmt::format("they are numbered from 1 to {}", trials.size()));
     }
-    return trials[number - 1];
+    return trials[*number - 1];
   }
   const GazeTrial* found = nullptr;
   for (const GazeTrial& trial : trials) {

@@ -22,10 +22,7 @@ bool can_be_pupils(double distance_mm) {
 double stated_pupil_distance_mm(const GazeLog& log) {
   std::vector<double> distances;
   for (const EyeOrigins& o : log.origins) {
-    const Vec3d apart{static_cast<double>(o.right_mm.x) - static_cast<double>(o.left_mm.x),
-                      static_cast<double>(o.right_mm.y) - static_cast<double>(o.left_mm.y),
-                      static_cast<double>(o.right_mm.z) - static_cast<double>(o.left_mm.z)};
-    const double distance = length(apart);
+    const double distance = length(to_double(o.right_mm) - to_double(o.left_mm));
     if (can_be_pupils(distance)) {
       distances.push_back(distance);
     }

@@ -3,58 +3,53 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 
 #include "core/statistics.hpp"
 #include "core/text.hpp"
-#include "gazelog/gzip.hpp"
+#include "gazelog/columns.hpp"
+#include "gazelog/log_file.hpp"
 #include "gazelog/read_support.hpp"
 #include "gazelog/units.hpp"
-#include "gazelog/validity.hpp"
 
 namespace gazetrace {
 namespace {
 
-BidsColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, const std::string& place) {
+BidsColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, UsedColumns& used) {
   const auto need = [&](const std::string& declared, std::initializer_list<std::string_view> names) {
     if (!declared.empty()) {
-      return declared_column(table, declared, place);
+      return declared_column(table, declared);
     }
     if (const auto found = table.find_any(names)) {
       return *found;
     }
-    throw Error(ErrorKind::input, place, fmt::format("the sidecar's Columns have no '{}'", *names.begin()),
+    throw Error(ErrorKind::input, table.place, fmt::format("the sidecar's Columns have no '{}'", *names.begin()),
                 "its columns are: " + column_listing(table));
   };
   BidsColumns c;
-  c.time = need(options.columns.time, {"timestamp", "time", "eye_timestamp", "eye1_timestamp"});
+  c.time = *used.use(need(options.columns.time, {"timestamp", "time", "eye_timestamp", "eye1_timestamp"}));
   c.x = need(options.columns.x, {"x_coordinate", "eye1_x_coordinate", "eye2_x_coordinate"});
   c.y = need(options.columns.y, {"y_coordinate", "eye1_y_coordinate", "eye2_y_coordinate"});
-  c.pupil = table.find_any({"pupil_size", "eye1_pupil_size", "eye2_pupil_size"});
+  c.pupil = used.use(table.find_any({"pupil_size", "eye1_pupil_size", "eye2_pupil_size"}));
   c.x_name = table.headings[c.x].text;
   c.y_name = table.headings[c.y].text;
-  if (!options.columns.x.empty() || !options.columns.y.empty()) {
-    return c;
+  if (options.columns.x.empty() && options.columns.y.empty()) {
+    const auto has = [&](const char* name) { return table.find(name).has_value(); };
+    c.z = used.find("direction_z");
+    c.is_direction = has("direction_x") && has("direction_y") && c.z;
+    c.is_fraction = !c.is_direction && has("display_x") && has("display_y");
+    if (c.is_direction || c.is_fraction) {
+      c.x = *table.find(c.is_direction ? "direction_x" : "display_x");
+      c.y = *table.find(c.is_direction ? "direction_y" : "display_y");
+    }
+    c.validity = used.find("validity");
+    c.confidence = used.find("confidence");
+    c.origin = {used.find("origin_x"), used.find("origin_y"), used.find("origin_z")};
   }
-  const auto x = table.find("display_x");
-  const auto y = table.find("display_y");
-  const auto dx = table.find("direction_x");
-  const auto dy = table.find("direction_y");
-  c.z = table.find("direction_z");
-  c.is_direction = dx && dy && c.z;
-  c.is_fraction = !c.is_direction && x && y;
-  if (c.is_direction || c.is_fraction) {
-    c.x = c.is_direction ? *dx : *x;
-    c.y = c.is_direction ? *dy : *y;
-  }
-  c.validity = table.find("validity");
-  c.confidence = table.find("confidence");
-  c.origin_x = table.find("origin_x");
-  c.origin_y = table.find("origin_y");
-  c.origin_z = table.find("origin_z");
+  used.use(c.x);
+  used.use(c.y);
   return c;
 }
 
@@ -95,13 +90,7 @@ std::int64_t end_of(std::int64_t begin_ns, std::string_view seconds) {
 // Where no unit is stated, the unit in which the steps agree with SamplingFrequency.
 int exponent_by_rate(const GazeFile& file, const DelimitedTable& table, std::size_t time, double rate_hz,
                      const std::string& place) {
-  std::vector<double> times;
-  TableRows rows(file, table, time + 1);
-  while (times.size() < 2000 && rows.next()) {
-    if (const auto value = number_from(rows.cell(time))) {
-      times.push_back(*value);
-    }
-  }
+  const std::vector<double> times = first_stamps(file, table, time);
   std::vector<double> steps;
   for (std::size_t i = 1; i < times.size(); ++i) {
     steps.push_back(std::abs(times[i] - times[i - 1]));
@@ -145,7 +134,9 @@ BidsColumns read_bids_samples(const GazeFile& file, const Sidecars& sidecars, co
                 "`x-column` 2 `y-column` 3");
   }
   DelimitedTable table = open_headerless(file.text, '\t', names);
-  BidsColumns c = find_columns(table, options, file.path);
+  table.place = file.path;
+  UsedColumns used(table);
+  BidsColumns c = find_columns(table, options, used);
   std::vector<std::string_view> first;
   LineReader lines(file.text);
   std::string_view line;
@@ -170,7 +161,7 @@ BidsColumns read_bids_samples(const GazeFile& file, const Sidecars& sidecars, co
     raw.pupil_unit = measure.empty() ? sidecars.text(names[*c.pupil] + ".Units") : measure;
   }
   const Eye eye = recorded_eye(sidecars);
-  TableRows rows(file, table, c.needed());
+  TableRows rows(file, table, used.needed());
   while (rows.next()) {
     rows.check_length();
     RawSample sample;
@@ -191,9 +182,8 @@ BidsColumns read_bids_samples(const GazeFile& file, const Sidecars& sidecars, co
     if (c.is_direction) {
       sample.at.z = rows.number(c.z);
     }
-    if (c.origin_x && c.origin_y && c.origin_z) {
-      add_origin(raw, eye, sample.t_ns,
-                 to_float({rows.number(c.origin_x), rows.number(c.origin_y), rows.number(c.origin_z)}));
+    if (c.origin[0] && c.origin[1] && c.origin[2]) {
+      add_origin(raw, eye, sample.t_ns, to_float(rows.vector(c.origin)));
     }
     raw.rows.push_back(sample);
   }
@@ -239,7 +229,7 @@ void read_bids_events(const Sidecars& physio, const std::string& path, RawGaze& 
       event.row = rows.line();
       event.eye = eye;
       event.begin_ns = rows.time_ns(*onset, {*exponent, 0});
-      event.end_ns = end_of(event.begin_ns, duration ? rows.cell(*duration) : std::string_view());
+      event.end_ns = end_of(event.begin_ns, rows.cell(duration));
       const std::string text = to_lower(rows.cell(type));
       const bool blinks = blink && rows.cell(*blink) == "1";
       event.type = blinks               ? GazeEventType::blink
@@ -253,8 +243,8 @@ void read_bids_events(const Sidecars& physio, const std::string& path, RawGaze& 
       if (std::int64_t stated_ns = 0; stated && scaled_integer(rows.cell(*stated), 9, stated_ns) == NumberStatus::ok) {
         event.stated_duration_ns = stated_ns;
       }
-      event.stated_amplitude_deg = amplitude ? number_from(rows.cell(*amplitude)) : std::nullopt;
-      event.stated_peak_velocity_deg_s = peak ? number_from(rows.cell(*peak)) : std::nullopt;
+      event.stated_amplitude_deg = number_from(rows.cell(amplitude));
+      event.stated_peak_velocity_deg_s = number_from(rows.cell(peak));
       raw.events.push_back(std::move(event));
     }
     return;

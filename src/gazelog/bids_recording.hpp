@@ -2,33 +2,24 @@
 // One BIDS recording: the table of an eye, what its sidecars say about it, and the events beside it.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <string>
 
 #include "gazelog/bids_sidecars.hpp"
-#include "gazelog/gaze_format.hpp"
+#include "gazelog/table.hpp"
 #include "gazetrace/gaze_raw.hpp"
 
 namespace gazetrace {
 
 struct BidsColumns {
   std::size_t time = 0, x = 0, y = 0;
-  std::optional<std::size_t> pupil;
+  OptionalColumn pupil;
   // For recordings that gazetrace wrote: columns that hold every bit of the places, and values for which the standard
   // has no name.
-  std::optional<std::size_t> z, validity, confidence, origin_x, origin_y, origin_z;
+  OptionalColumn z, validity, confidence;
+  VectorColumns origin;
   bool is_fraction = false, is_direction = false;
   std::string x_name, y_name;
-
-  [[nodiscard]] std::size_t needed() const {
-    std::size_t last = std::max({time, x, y});
-    for (const auto& column : {pupil, z, validity, confidence, origin_x, origin_y, origin_z}) {
-      last = std::max(last, column.value_or(0));
-    }
-    return last + 1;
-  }
 };
 
 // The bytes of a table, unpacked.

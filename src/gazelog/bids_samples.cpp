@@ -8,7 +8,7 @@
 #include "gazelog/bids_parts.hpp"
 #include "gazelog/bids_sidecars.hpp"
 #include "gazelog/eyes.hpp"
-#include "gazelog/timing.hpp"
+#include "gazelog/stamps.hpp"
 
 namespace gazetrace {
 namespace {
@@ -17,6 +17,17 @@ using Json = BidsJson;
 
 BidsRow row_of(const GazeSample& sample, GazeKind kind) {
   return {sample.t_ns, eye_gaze(sample, kind), {NAN, NAN, NAN}};
+}
+
+// The number itself or one of its neighbours.
+template <class Fits>
+double one_that_fits(double number, const Fits& fits) {
+  for (const double x : {number, std::nextafter(number, -HUGE_VAL), std::nextafter(number, HUGE_VAL)}) {
+    if (fits(x)) {
+      return x;
+    }
+  }
+  return number;
 }
 
 template <class Number>
@@ -197,42 +208,28 @@ class RecordingWriter {
 }  // namespace
 
 double inverse_of_division(double value, double scale) {
-  const double product = value * scale;
-  for (const double x : {product, std::nextafter(product, -HUGE_VAL), std::nextafter(product, HUGE_VAL)}) {
-    if (x / scale == value) {
-      return x;
-    }
-  }
-  return product;
+  return one_that_fits(value * scale, [&](double x) { return x / scale == value; });
 }
 
 double inverse_of_product(double value, double scale) {
-  const double quotient = value / scale;
-  for (const double x : {quotient, std::nextafter(quotient, -HUGE_VAL), std::nextafter(quotient, HUGE_VAL)}) {
-    if (x * scale == value) {
-      return x;
-    }
-  }
-  return quotient;
+  return one_that_fits(value / scale, [&](double x) { return x * scale == value; });
 }
 
 std::vector<BidsRecording> bids_recordings(const GazeLog& log) {
+  constexpr Vec3f kUnknown{NAN, NAN, NAN};
   const bool has_own_rows = !chosen_eye(log).is_alone;
   std::vector<BidsRecording> all{{Eye::left, {}}, {Eye::right, {}}, {Eye::cyclopean, {}}};
   for (std::size_t i = 0; i < log.samples.size(); ++i) {
     const GazeSample& sample = log.samples[i];
-    const EyeOrigins* const origins = log.origins.empty() ? nullptr : &log.origins[i];
+    const EyeOrigins origins = log.origins.empty() ? EyeOrigins{kUnknown, kUnknown} : log.origins[i];
     if (log.eyes.empty()) {
       BidsRow row = row_of(sample, log.kind);
-      if (origins != nullptr) {
-        row.origin_mm = sample.eye == Eye::right ? origins->right_mm : origins->left_mm;
-      }
+      row.origin_mm = sample.eye == Eye::right ? origins.right_mm : origins.left_mm;
       all[static_cast<std::size_t>(sample.eye)].rows.push_back(row);
       continue;
     }
-    all[0].rows.push_back({sample.t_ns, log.eyes[i].left, origins != nullptr ? origins->left_mm : BidsRow().origin_mm});
-    all[1].rows.push_back(
-        {sample.t_ns, log.eyes[i].right, origins != nullptr ? origins->right_mm : BidsRow().origin_mm});
+    all[0].rows.push_back({sample.t_ns, log.eyes[i].left, origins.left_mm});
+    all[1].rows.push_back({sample.t_ns, log.eyes[i].right, origins.right_mm});
     if (has_own_rows) {
       all[2].rows.push_back(row_of(sample, log.kind));
     }

@@ -96,26 +96,6 @@ const Sidecars::File* Sidecars::file_with(std::string_view path) const {
   return nullptr;
 }
 
-std::string Sidecars::text(std::string_view path) const {
-  const File* const file = file_with(path);
-  return file == nullptr ? "" : file->json.text(path);
-}
-
-std::optional<double> Sidecars::number(std::string_view path) const {
-  const File* const file = file_with(path);
-  return file == nullptr ? std::nullopt : file->json.number(path);
-}
-
-std::vector<double> Sidecars::numbers(std::string_view path) const {
-  const File* const file = file_with(path);
-  return file == nullptr ? std::vector<double>() : file->json.numbers(path);
-}
-
-std::vector<std::string> Sidecars::texts(std::string_view path) const {
-  const File* const file = file_with(path);
-  return file == nullptr ? std::vector<std::string>() : file->json.texts(path);
-}
-
 std::string Sidecars::source(std::string_view path) const {
   const File* const file = file_with(path);
   return file == nullptr ? "" : fs::path(file->path).filename().string();
@@ -137,8 +117,7 @@ std::vector<std::string> sibling_recordings(const BidsName& name, std::string_vi
   std::vector<std::string> siblings = files_of_bids_name(name);
   std::erase_if(siblings, [&](const std::string& path) {
     const BidsName other = parse_bids_name(path);
-    const bool is_table = other.extension == ".tsv" || other.extension == ".tsv.gz";
-    return other.suffix != suffix || !is_table || other.entities == name.entities;
+    return other.suffix != suffix || !other.is_table() || other.entities == name.entities;
   });
   return siblings;
 }

@@ -18,6 +18,7 @@ struct BidsName {
   std::vector<std::string> entities;  // "sub-01", "task-view", "recording-eye1"
   std::string suffix;                 // "physio"
   std::string extension;              // ".tsv.gz"
+  [[nodiscard]] bool is_table() const { return extension == ".tsv" || extension == ".tsv.gz"; }
 };
 BidsName parse_bids_name(const std::string& path);
 
@@ -27,11 +28,10 @@ class Sidecars {
   // Error(input) for broken JSON, and for links out of the data set unless these are allowed.
   Sidecars(const BidsName& name, std::string_view suffix, bool allow_outside = false);
 
-  [[nodiscard]] std::string text(std::string_view path) const;
-  [[nodiscard]] std::optional<double> number(std::string_view path) const;
-  [[nodiscard]] std::vector<double> numbers(std::string_view path) const;
-  [[nodiscard]] std::vector<std::string> texts(std::string_view path) const;
-  [[nodiscard]] bool empty() const { return files_.empty(); }
+  [[nodiscard]] std::string text(std::string_view path) const { return value(path, &JsonLeaves::text); }
+  [[nodiscard]] std::optional<double> number(std::string_view path) const { return value(path, &JsonLeaves::number); }
+  [[nodiscard]] std::vector<double> numbers(std::string_view path) const { return value(path, &JsonLeaves::numbers); }
+  [[nodiscard]] std::vector<std::string> texts(std::string_view path) const { return value(path, &JsonLeaves::texts); }
   [[nodiscard]] bool allow_outside() const { return allow_outside_; }
   [[nodiscard]] std::string source(std::string_view path) const;  // the file that states it
 
@@ -41,6 +41,12 @@ class Sidecars {
     JsonLeaves json;
   };
   [[nodiscard]] const File* file_with(std::string_view path) const;
+  // Of the most specific file that has the key; empty where none has it.
+  template <class Value>
+  [[nodiscard]] Value value(std::string_view path, Value (JsonLeaves::*get)(std::string_view) const) const {
+    const File* const file = file_with(path);
+    return file == nullptr ? Value() : (file->json.*get)(path);
+  }
   std::vector<File> files_;  // the most specific first
   bool allow_outside_;
 };

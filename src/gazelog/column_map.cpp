@@ -9,18 +9,12 @@
 #include <utility>
 
 #include "core/atomic_file.hpp"
-#include "core/enum_name.hpp"
 #include "core/text.hpp"
 #include "gazelog/json.hpp"
-#include "gazelog/read_support.hpp"
 #include "gazelog/units.hpp"
 
 namespace gazetrace {
 namespace {
-
-std::string_view to_string(TimeUnit unit) {
-  return name_of(unit, {"auto", "ns", "us", "ms", "s"});
-}
 
 // Every member of a map by its name. Saving, loading and merging all walk over this list.
 template <class Columns, class Visitor>

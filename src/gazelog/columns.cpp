@@ -65,7 +65,7 @@ std::string name_without_eye(std::string_view name) {
 
 class Finder {
  public:
-  Finder(const DelimitedTable& table, const std::string& place) : table_(table), place_(place) {}
+  explicit Finder(const DelimitedTable& table) : table_(table) {}
 
   [[nodiscard]] OptionalColumn by_role(RoleNames names) const {
     for (const std::string_view name : names) {
@@ -94,7 +94,7 @@ class Finder {
   }
 
   [[nodiscard]] OptionalColumn optional(const std::string& name, RoleNames names = {}) const {
-    return name.empty() ? by_role(names) : std::optional(declared_column(table_, name, place_));
+    return name.empty() ? by_role(names) : std::optional(declared_column(table_, name));
   }
 
   [[nodiscard]] std::size_t required(const std::string& name, RoleNames names, std::string_view what,
@@ -119,7 +119,7 @@ class Finder {
       options += fmt::format("{}{}", joint, missing_[i].option);
     }
     const bool is_one = missing_.size() == 1;
-    throw Error(ErrorKind::input, place_,
+    throw Error(ErrorKind::input, table_.place,
                 fmt::format("no {} for {} {} found; the columns are: {}", is_one ? "column" : "columns", what,
                             is_one ? "is" : "are", column_listing(table_)),
                 fmt::format("name {} with {}", is_one ? "it" : "them", options));
@@ -131,7 +131,6 @@ class Finder {
   };
 
   const DelimitedTable& table_;
-  const std::string& place_;
   mutable std::vector<Missing> missing_;
 };
 
@@ -255,24 +254,25 @@ void plan_positions(ColumnPlan& plan, const Finder& find, const GazeColumns& dec
 void plan_head(ColumnPlan& plan, const Finder& find, const GazeColumns& declared) {
   plan.head_position = {find.optional(declared.head_x), find.optional(declared.head_y), find.optional(declared.head_z)};
   plan.head_rotation = {find.optional(declared.head_rotation_x), find.optional(declared.head_rotation_y),
-                        find.optional(declared.head_rotation_z), find.optional(declared.head_rotation_w)};
+                        find.optional(declared.head_rotation_z)};
+  plan.head_w = find.optional(declared.head_rotation_w);
 }
 
-void plan_time_unit(ColumnPlan& plan, const ColumnHeading& heading, const GazeColumns& declared,
-                    const std::string& place) {
+void plan_time_unit(ColumnPlan& plan, const DelimitedTable& table, const GazeColumns& declared) {
+  const ColumnHeading& heading = table.headings[plan.time];
   if (!heading.unit.empty()) {
     plan.time_exponent = time_exponent(heading.unit);
   }
   const auto flag = time_exponent_of(declared.time_unit);
   if (flag && plan.time_exponent && *flag != *plan.time_exponent) {
     plan.warnings.push_back(fmt::format("{}: the header says that '{}' is in {}; `time-unit` {} was given and is used",
-                                        place, heading.text, time_unit_text(*plan.time_exponent),
+                                        table.place, heading.text, time_unit_text(*plan.time_exponent),
                                         time_unit_text(*flag)));
   }
   if (flag) {
     plan.time_exponent = flag;
   } else if (!heading.unit.empty() && !plan.time_exponent) {
-    throw Error(ErrorKind::input, place,
+    throw Error(ErrorKind::input, table.place,
                 fmt::format("unknown unit '{}' of time column '{}'", heading.unit, heading.text),
                 "use [s], [ms], [us] or [ns], or give `time-unit`");
   }
@@ -291,8 +291,8 @@ PositionUnit unit_of(const ColumnHeading& heading, const GazeColumns& declared, 
   return unit.value_or(PositionUnit::automatic);
 }
 
-void plan_position_unit(ColumnPlan& plan, const DelimitedTable& table, const GazeColumns& declared,
-                        const std::string& place) {
+void plan_position_unit(ColumnPlan& plan, const DelimitedTable& table, const GazeColumns& declared) {
+  const std::string& place = table.place;
   const PositionUnit flag = declared.position_unit;
   const ColumnHeading& x_heading = table.headings[plan.sources.front().x];
   const ColumnHeading& y_heading = table.headings[plan.sources.front().y];
@@ -322,25 +322,26 @@ void plan_position_unit(ColumnPlan& plan, const DelimitedTable& table, const Gaz
 
 }  // namespace
 
-std::size_t ColumnPlan::needed_cells() const {
-  std::size_t needed = time + 1;
-  const auto reach = [&](const OptionalColumn& column) { needed = std::max(needed, column ? *column + 1 : 0); };
+std::size_t ColumnPlan::needed_cells(const DelimitedTable& table) const {
+  UsedColumns used(table);
+  used.use(time);
+  const auto use = [&](const VectorColumns& columns) {
+    std::for_each(columns.begin(), columns.end(), [&](const OptionalColumn& column) { used.use(column); });
+  };
   for (const GazeSource& source : sources) {
-    for (const OptionalColumn& column :
-         {OptionalColumn(source.x), OptionalColumn(source.y), source.z, source.validity, source.confidence,
-          source.pupil, source.openness, source.origin[0], source.origin[1], source.origin[2]}) {
-      reach(column);
-    }
+    use({source.x, source.y, source.z});
+    use({source.validity, source.confidence, source.pupil});
+    use(source.origin);
+    used.use(source.openness);
   }
-  for (const OptionalColumn& column : {eye, frame, head_position[0], head_position[1], head_position[2],
-                                       head_rotation[0], head_rotation[1], head_rotation[2], head_rotation[3]}) {
-    reach(column);
-  }
-  return needed;
+  use(head_position);
+  use(head_rotation);
+  use({eye, frame, head_w});
+  return used.needed();
 }
 
-ColumnPlan plan_columns(const DelimitedTable& table, const GazeColumns& declared, const std::string& place) {
-  const Finder find(table, place);
+ColumnPlan plan_columns(const DelimitedTable& table, const GazeColumns& declared) {
+  const Finder find(table);
   ColumnPlan plan;
   plan.time = find.required(declared.time, kTime, "time", "`time-column`");
   plan_positions(plan, find, declared);
@@ -348,8 +349,8 @@ ColumnPlan plan_columns(const DelimitedTable& table, const GazeColumns& declared
   plan.eye = find.optional(declared.eye, kEye);
   plan.frame = find.optional(declared.frame);
   find.refuse_missing();
-  plan_time_unit(plan, table.headings[plan.time], declared, place);
-  plan_position_unit(plan, table, declared, place);
+  plan_time_unit(plan, table, declared);
+  plan_position_unit(plan, table, declared);
   for (const GazeSource& source : plan.sources) {
     if (source.pupil && plan.pupil_unit.empty()) {
       plan.pupil_unit = table.headings[*source.pupil].unit;

@@ -2,14 +2,12 @@
 // What the numbers of a log mean: what the user says wins over what the log says, and what nobody says is guessed.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "core/statistics.hpp"
 #include "gazelog/judge.hpp"
 #include "gazelog/row_samples.hpp"
-#include "gazelog/units.hpp"
 
 namespace gazetrace {
 namespace {
@@ -88,18 +86,10 @@ void conclude_origin(const RawGaze& raw, const GazeReadOptions& options, Convent
 
 // The smallest usual display that holds nearly all places: good enough to look at a log, never to render from one.
 void guess_display(const RawGaze& raw, Conventions& c) {
-  static constexpr std::array<std::array<int, 2>, 12> kUsual{{{640, 480},
-                                                              {800, 600},
-                                                              {1024, 768},
-                                                              {1280, 720},
-                                                              {1280, 1024},
-                                                              {1600, 900},
-                                                              {1680, 1050},
-                                                              {1920, 1080},
-                                                              {1920, 1200},
-                                                              {2560, 1440},
-                                                              {3840, 2160},
-                                                              {7680, 4320}}};
+  using Size = std::array<int, 2>;
+  static constexpr std::array kUsual{Size{640, 480},   Size{800, 600},   Size{1024, 768},  Size{1280, 720},
+                                     Size{1280, 1024}, Size{1600, 900},  Size{1680, 1050}, Size{1920, 1080},
+                                     Size{1920, 1200}, Size{2560, 1440}, Size{3840, 2160}, Size{7680, 4320}};
   std::size_t usable = 0;
   std::array<std::size_t, kUsual.size()> inside{};
   for (const RawSample row : measurable_rows(raw, c)) {

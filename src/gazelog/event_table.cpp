@@ -2,7 +2,7 @@
 // Columns after the exports of Pupil Player and Pupil Cloud (fixations.csv, saccades.csv, blinks.csv,
 // surface_positions.csv, imu.csv), Gazepoint Analysis (User N_fixations.csv), EyeLink Data Viewer (fixation and saccade
 // reports), SMI BeGaze (event statistics), Tobii's fixation exports, BIDS, and 'gaze events' itself.
-#include "gazelog/event_table.hpp"
+#include "gazelog/log_file.hpp"
 
 #include <fmt/format.h>
 
@@ -11,13 +11,10 @@
 #include <set>
 
 #include "core/text.hpp"
-#include "gazelog/log_file.hpp"
-#include "gazelog/read_support.hpp"
+#include "gazelog/table.hpp"
 
 namespace gazetrace {
 namespace {
-
-using OptionalColumn = std::optional<std::size_t>;
 
 // Where a row's event begins, and where it ends or how long it lasts.
 struct EventColumns {
@@ -115,11 +112,6 @@ EventColumns find_columns(const GazeFile& file, const DelimitedTable& table) {
   return c;
 }
 
-[[noreturn]] void refuse(const GazeFile& file, const DelimitedTable& table, const std::string& what,
-                         const std::string& remedy) {
-  throw Error(ErrorKind::input, place_of(file, table.header_line), what, remedy);
-}
-
 bool is_table(const GazeFile& file) {
   LineReader lines(head_of(file));
   for (std::string_view line; lines.next(line);) {
@@ -145,10 +137,6 @@ Eye eye_of(std::string_view text) {
   return lower.starts_with('l') ? Eye::left : lower.starts_with('r') ? Eye::right : Eye::cyclopean;
 }
 
-std::optional<double> stated(TableRows& rows, const OptionalColumn& column) {
-  return column ? number_from(rows.cell(*column)) : std::nullopt;
-}
-
 }  // namespace
 
 void refuse_other_tables(const GazeFile& file, bool is_named) {
@@ -162,12 +150,14 @@ void refuse_other_tables(const GazeFile& file, bool is_named) {
     });
   };
   if ((has("top left x") && has("bottom right x")) || has("img_to_surf_trans")) {
-    refuse(file, table, "holds the corners of a surface in the scene camera's picture, and no gaze",
-           "read the gaze on that surface: gaze_positions_on_surface_<name>.csv of Pupil Player, or gaze.csv of Pupil "
-           "Cloud's Marker Mapper");
+    throw Error(
+        ErrorKind::input, table.place, "holds the corners of a surface in the scene camera's picture, and no gaze",
+        "read the gaze on that surface: gaze_positions_on_surface_<name>.csv of Pupil Player, or gaze.csv of Pupil "
+        "Cloud's Marker Mapper");
   }
   if (has("gyro x") && has("acceleration x") && !has("gaze")) {
-    refuse(file, table, "holds movements of the head (IMU), and no gaze", "read the gaze that was exported beside it");
+    throw Error(ErrorKind::input, table.place, "holds movements of the head (IMU), and no gaze",
+                "read the gaze that was exported beside it");
   }
   const bool has_gaze = has("gaze x") || has("gaze_x") || has("gaze position") || has("gaze point") || has("bpogx") ||
                         has("gazepoint") || has("por x");
@@ -175,8 +165,8 @@ void refuse_other_tables(const GazeFile& file, bool is_named) {
   if (!c.found() || (has_gaze && c.kind != "fixations" && !c.is_certain) || (is_named && !c.is_certain)) {
     return;
   }
-  refuse(
-      file, table,
+  throw Error(
+      ErrorKind::input, table.place,
       fmt::format("is a table of {} with one row for each ('{}', '{}'), and no gaze: what the eye did between is not "
                   "in it",
                   c.kind, table.headings[*c.begin].text, table.headings[c.end ? *c.end : *c.duration].text),
@@ -192,13 +182,14 @@ std::vector<GazeEvent> read_event_table(const std::string& path) {
   const EventColumns c = find_columns(file, table);
   const std::optional<GazeEventType> type_of_all = type_of(c.kind);
   if (!c.found() || (!type_of_all && !c.type)) {
-    refuse(file, table, "there are no columns of begin, of end or duration, and of the type of an event",
-           "the columns may be called onset, offset or duration, and type, with units such as onset [ms]; they are: " +
-               column_listing(table));
+    throw Error(
+        ErrorKind::input, table.place, "there are no columns of begin, of end or duration, and of the type of an event",
+        "the columns may be called onset, offset or duration, and type, with units such as onset [ms]; they are: " +
+            column_listing(table));
   }
-  std::size_t needed = 0;
+  UsedColumns used(table);
   for (const OptionalColumn& column : {c.begin, c.end, c.duration, c.type}) {
-    needed = std::max(needed, column ? *column + 1 : 0);
+    used.use(column);
   }
   std::vector<GazeEvent> events;
   TableRows rows(file, table, table.headings.size());
@@ -207,7 +198,7 @@ std::vector<GazeEvent> read_event_table(const std::string& path) {
     if (!type) {
       continue;  // another movement, such as unclassified
     }
-    if (rows.cell(needed - 1).empty() && is_missing(rows.cell(*c.begin))) {
+    if (rows.cell(used.needed() - 1).empty() && is_missing(rows.cell(*c.begin))) {
       rows.check_length();
     }
     GazeEvent event;
@@ -223,8 +214,8 @@ std::vector<GazeEvent> read_event_table(const std::string& path) {
         rows.fail("the event ends beyond int64 nanoseconds", "mend the row");
       }
     }
-    event.stated_amplitude_deg = stated(rows, c.amplitude_deg);
-    event.stated_peak_velocity_deg_s = stated(rows, c.peak_deg_s);
+    event.stated_amplitude_deg = number_from(rows.cell(c.amplitude_deg));
+    event.stated_peak_velocity_deg_s = number_from(rows.cell(c.peak_deg_s));
     if (event.end_ns < event.begin_ns) {
       rows.fail("the event ends before it begins", "mend the row");
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gazelog/eye_motion.hpp"
+#include "gazelog/judge.hpp"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -189,9 +188,7 @@ EyeQuality quality_of(const GazeLog& log, const AnglePlane& plane, EyeGaze BothE
       steps.push_back(step.x * step.x + step.y * step.y);
     }
   }
-  if (!steps.empty()) {
-    quality.step = upper_median(steps);
-  }
+  quality.step = steps.empty() ? 0 : upper_median(steps);
   return quality;
 }
 
@@ -206,8 +203,9 @@ Eye better_eye(const GazeLog& log, const AnglePlane& plane) {
   return left.step <= right.step ? Eye::left : Eye::right;
 }
 
-// In degrees; empty where angles are not known or the eyes are never seen together.
-std::optional<double> median_vertical_disparity_deg(const GazeLog& log, const AnglePlane& plane) {
+// The median vertical difference, where it is great; empty where angles are not known or the eyes are never seen
+// together.
+std::optional<double> great_disparity_deg(const GazeLog& log, const AnglePlane& plane) {
   if (!plane.knows_angles()) {
     return std::nullopt;
   }
@@ -219,10 +217,8 @@ std::optional<double> median_vertical_disparity_deg(const GazeLog& log, const An
       differences.push_back((plane.angles(eyes.left.at).y - plane.angles(eyes.right.at).y) * kDegPerRad);
     }
   }
-  if (differences.empty()) {
-    return std::nullopt;
-  }
-  return upper_median(differences);
+  const double median = upper_median(differences);  // NaN of none
+  return std::abs(median) > kMaxVerticalDisparityDeg ? std::optional(median) : std::nullopt;
 }
 
 float mean_or_known(float a, float b) {
@@ -290,11 +286,6 @@ JoinedTimes join_eyes(GazeLog& log, const AnglePlane& plane, Eye preferred) {
   return times;
 }
 
-std::optional<double> great_disparity_deg(const GazeLog& log, const AnglePlane& plane) {
-  const auto disparity = median_vertical_disparity_deg(log, plane);
-  return disparity && std::abs(*disparity) > kMaxVerticalDisparityDeg ? disparity : std::nullopt;
-}
-
 void warn_of_disparity(GazeLog& log, double disparity_deg, Eye taken) {
   log.warnings.push_back(
       fmt::format("{}: the eyes differ vertically by {:.2f} deg in the median, as after a poor calibration; the {} eye "
@@ -324,16 +315,14 @@ void take_stated_eye(GazeLog& log, Eye eye, bool has_own_rows, const AnglePlane&
   }
 }
 
-[[noreturn]] void no_such_eye(const GazeLog& log, std::string_view eye) {
-  throw Error(ErrorKind::usage, log.source, fmt::format("has no rows of the {} eye", eye),
-              "leave `gaze-eye` out, or choose another");
-}
-
 }  // namespace
 
+Vec3d place_of(const GazeSample& sample, GazeKind kind) {
+  return kind == GazeKind::direction ? sample.direction : Vec3d{sample.u, sample.v, 0};
+}
+
 EyeGaze eye_gaze(const GazeSample& sample, GazeKind kind) {
-  return {kind == GazeKind::direction ? sample.direction : Vec3d{sample.u, sample.v, 0}, sample.confidence,
-          sample.pupil, sample.validity};
+  return {place_of(sample, kind), sample.confidence, sample.pupil, sample.validity};
 }
 
 void take_eye(GazeSample& sample, const EyeGaze& eye, GazeKind kind) {
@@ -352,7 +341,6 @@ ChosenEye chosen_eye(const GazeLog& log) {
   if (log.eyes.empty() || log.samples.empty() || log.samples.front().eye == Eye::cyclopean) {
     return {};
   }
-  const auto same = [](auto a, auto b) { return a == b || (std::isnan(a) && std::isnan(b)); };
   ChosenEye chosen{log.samples.front().eye, true};
   for (std::size_t i = 0; i < log.samples.size(); ++i) {
     const GazeSample& sample = log.samples[i];
@@ -361,9 +349,10 @@ ChosenEye chosen_eye(const GazeLog& log) {
     }
     const EyeGaze a = eye_gaze(sample, log.kind);
     const EyeGaze& b = *chosen.eye == Eye::left ? log.eyes[i].left : log.eyes[i].right;
-    chosen.is_alone = chosen.is_alone && a.validity == b.validity && same(a.confidence, b.confidence) &&
-                      same(a.pupil, b.pupil) && same(a.at.x, b.at.x) && same(a.at.y, b.at.y) &&
-                      (log.kind != GazeKind::direction || same(a.at.z, b.at.z));
+    chosen.is_alone = chosen.is_alone && a.validity == b.validity && same_or_unknown(a.confidence, b.confidence) &&
+                      same_or_unknown(a.pupil, b.pupil) && same_or_unknown(a.at.x, b.at.x) &&
+                      same_or_unknown(a.at.y, b.at.y) &&
+                      (log.kind != GazeKind::direction || same_or_unknown(a.at.z, b.at.z));
   }
   return chosen;
 }
@@ -385,10 +374,7 @@ void RowGrouper::add(const GazeSample& row) {
       order.first_duplicate_ns = row.t_ns;
       order.row_repeated = of_eye->row;
     }
-    const auto is_same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
-    const EyeGaze a = eye_gaze(*of_eye, log_.kind);
-    const EyeGaze b = eye_gaze(row, log_.kind);
-    order.identical_duplicates += is_same(a.at.x, b.at.x) && is_same(a.at.y, b.at.y) && is_same(a.at.z, b.at.z) ? 1 : 0;
+    order.identical_duplicates += is_same_place(eye_gaze(*of_eye, log_.kind).at, eye_gaze(row, log_.kind).at) ? 1 : 0;
   }
   first_ = first_ && first_->eye != row.eye ? *first_ : row;
   of_eye = row;
@@ -418,7 +404,9 @@ void RowGrouper::finish(UnorderedPolicy policy) {
 void check_eye_choice(const GazeLog& log, const RowsOfEyes& rows) {
   const EyeChoice choice = log.conventions.eye;
   if ((choice == EyeChoice::left && rows.left() == 0) || (choice == EyeChoice::right && rows.right() == 0)) {
-    no_such_eye(log, choice == EyeChoice::left ? "left" : "right");
+    throw Error(ErrorKind::usage, log.source,
+                fmt::format("has no rows of the {} eye", choice == EyeChoice::left ? "left" : "right"),
+                "leave `gaze-eye` out, or choose another");
   }
 }
 
@@ -435,8 +423,9 @@ void choose_eyes(GazeLog& log, const RowsOfEyes& rows) {
   const AnglePlane plane(log);
   const Evidence evidence = choice == EyeChoice::automatic ? Evidence::format : Evidence::option;
   if (choice == EyeChoice::left || choice == EyeChoice::right) {
-    take_one_eye(log, choice == EyeChoice::left ? Eye::left : Eye::right);
-    note_taken(log, choice == EyeChoice::left ? TakenEye::left : TakenEye::right, evidence, true);
+    const Eye eye = choice == EyeChoice::left ? Eye::left : Eye::right;
+    take_one_eye(log, eye);
+    note_taken(log, taken_of(eye), evidence, true);
     return;
   }
   if (const auto& stated = log.stated_eye;

@@ -46,6 +46,9 @@ class RowGrouper {
 // taken.
 void choose_eyes(GazeLog& log, const RowsOfEyes& rows);
 
+// The place of a sample as a vector that can be added and weighted: (u, v, 0), or the direction.
+Vec3d place_of(const GazeSample& sample, GazeKind kind);
+
 // The gaze of a sample as that of one eye, and the other way round: what of a sample an eye's gaze replaces.
 EyeGaze eye_gaze(const GazeSample& sample, GazeKind kind);
 void take_eye(GazeSample& sample, const EyeGaze& eye, GazeKind kind);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "gazetrace/gaze_raw.hpp"
 
@@ -14,10 +13,7 @@ struct GazeFile {
   std::string text;  // unpacked; UTF-8 without a byte-order mark, or the bytes of a binary format
 };
 
-struct GazeFormat {
-  std::string name;
-  FormatProof proof;
-  std::string description;
+struct GazeFormat : GazeFormatInfo {
   double (*sniff)(const GazeFile& file);  // how sure it is, 0..1
   // Reads the rows in the order of the file, one for each eye and each combined gaze of the log, with their numbers as
   // they stand in the file, and what the file says about them.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gazelog/gzip.hpp"
+#include "gazelog/log_file.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>

@@ -76,26 +76,8 @@ GazeLog log_without_samples(const RawGaze& raw, const Conventions& conventions) 
                 "conclude the conventions of the log before it is interpreted, or state their unit");
   }
   GazeLog log;
-  log.kind = raw.kind;
-  log.source = raw.source;
-  log.format = raw.format;
-  log.format_confidence = raw.format_confidence;
-  log.clock = raw.clock;
-  log.pupil_unit = raw.pupil_unit;
+  static_cast<GazeRecord&>(log) = raw;
   log.recording_geometry = conventions.recording_geometry;
-  log.pixels_per_degree = raw.pixels_per_degree;
-  log.nominal_rate_hz = raw.nominal_rate_hz;
-  log.sample_age_unknown = raw.sample_age_unknown;
-  log.stated_eye = raw.stated_eye;
-  log.device = raw.device;
-  log.origins = raw.origins;
-  log.head = raw.head;
-  log.events = raw.events;
-  log.calibrations = raw.calibrations;
-  log.witnesses = raw.witnesses;
-  log.recordings = raw.recordings;
-  log.recording = raw.recording;
-  log.warnings = raw.warnings;
   log.warnings.insert(log.warnings.end(), raw.damages.begin(), raw.damages.end());
   log.warnings.insert(log.warnings.end(), conventions.warnings.begin(), conventions.warnings.end());
   log.conventions = conventions;

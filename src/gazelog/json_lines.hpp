@@ -31,6 +31,40 @@ inline std::optional<std::int64_t> json_time_ns(const JsonLeaves& json, std::str
   return t_ns;
 }
 
+// The raw gaze of Tobii's glasses: directions from the head where these are asked for, else places on the scene video.
+inline RawGaze raw_of_glasses(const GazeFile& file, const GazeReadOptions& options, std::string clock) {
+  RawGaze raw = raw_of(file, std::move(clock), "mm");
+  raw.way_out =
+      "`frame` head takes the directions of the eyes from the head; or map gaze onto the display "
+      "and export that";
+  raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
+  return raw;
+}
+
+// Declares the rows by the names of the direction, of the place, and of the point in space that is its witness.
+inline void declare_glasses(RawGaze& raw, const GazeFile& file, const std::string& direction, const std::string& place,
+                            const std::string& point, const WitnessTally& points) {
+  if (raw.kind == GazeKind::direction) {
+    declare_directions(raw, {direction, Evidence::format, "of each eye"}, GazeAxes::sranipal, Evidence::format,
+                       file.path);
+  } else {
+    points.finish(raw, point);
+    declare_places(raw, {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format, place}, file.path);
+  }
+}
+
+// The row of an eye's direction; lost where it is none.
+inline RawSample direction_row(std::int64_t t_ns, std::int64_t row, std::size_t side, const Vec3d& direction,
+                               double pupil_mm) {
+  RawSample sample = missing_row(t_ns, row, side == 0 ? Eye::left : Eye::right);
+  if (length(direction) > 0) {
+    sample.at = direction;
+    sample.validity = GazeValidity::ok;
+  }
+  sample.pupil = static_cast<float>(pupil_mm);
+  return sample;
+}
+
 // Calls use(json, line number, place) for each line. A last line that was cut off is left out and told among `damages`,
 // because recordings end like this when the battery is empty.
 template <class Use>

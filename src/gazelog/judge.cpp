@@ -9,7 +9,6 @@
 
 #include "core/statistics.hpp"
 #include "gazelog/row_samples.hpp"
-#include "gazelog/units.hpp"
 
 namespace gazetrace {
 namespace {

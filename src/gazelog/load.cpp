@@ -2,12 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
-#include <utility>
 
 #include "core/enum_name.hpp"
+#include "core/named.hpp"
 #include "core/text.hpp"
-#include "gazelog/event_table.hpp"
 #include "gazelog/gaze_format.hpp"
 #include "gazelog/judge.hpp"
 #include "gazelog/log_file.hpp"
@@ -29,7 +27,7 @@ namespace {
 const std::vector<GazeFormat>& formats() {
   static const std::vector<GazeFormat> all{
 #define GAZE_FORMAT(name, text, proof, description) \
-  {text, FormatProof::proof, description, sniff_gaze_##name, read_gaze_##name},
+  {{text, description, FormatProof::proof}, sniff_gaze_##name, read_gaze_##name},
 #include "gazelog/formats/formats.def"
 #undef GAZE_FORMAT
   };
@@ -37,14 +35,7 @@ const std::vector<GazeFormat>& formats() {
 }
 
 const GazeFormat& format_by_name(const std::string& name) {
-  std::vector<std::string> names;
-  for (const GazeFormat& format : formats()) {
-    if (format.name == name) {
-      return format;
-    }
-    names.push_back(format.name);
-  }
-  throw Error(ErrorKind::usage, "", unknown_name_message("gaze format", name, names));
+  return find_named(formats(), name, "gaze format", "");
 }
 
 struct Guess {
@@ -92,10 +83,7 @@ void add_decimal_mark(const GazeFile& file, RawGaze& raw) {
     if (text.empty() || ((text.front() < '0' || text.front() > '9') && text.front() != '-')) {
       continue;
     }
-    const char separator = text.find('\t') != std::string_view::npos  ? '\t'
-                           : text.find(';') != std::string_view::npos ? ';'
-                                                                      : ' ';
-    split_cells(text, separator, cells);
+    split_cells(text, separator_of(text, ' '), cells);
     for (const std::string_view cell : cells) {
       const std::size_t mark = cell.find_first_of(",.");
       if (mark != std::string_view::npos && cells.size() > 2 && number_from(trim(cell))) {
@@ -185,11 +173,7 @@ std::string_view to_string(GazeEventType type) {
 }
 
 std::vector<GazeFormatInfo> gaze_formats() {
-  std::vector<GazeFormatInfo> infos;
-  for (const GazeFormat& format : formats()) {
-    infos.push_back({format.name, format.description, format.proof});
-  }
-  return infos;
+  return {formats().begin(), formats().end()};
 }
 
 RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options) {

@@ -11,7 +11,6 @@
 #include <memory>
 
 #include "core/text.hpp"
-#include "gazelog/gzip.hpp"
 
 namespace gazetrace {
 namespace {

@@ -37,4 +37,28 @@ void split_vector_cells(GazeFile& file);
 // thousands: rows hold more cells than there are columns.
 void refuse_split_numbers(const GazeFile& file);
 
+// Tables that trackers and analysis programs write beside gaze: fixations, saccades and blinks with one row for each,
+// corners of surfaces, movements of the head. Their columns of time and place look like gaze (event_table.cpp).
+
+// Throws Error(input) for a table that holds no gaze, saying what it holds and what it is good for. `is_named`: the
+// user names the format, so that only what is certain is refused.
+void refuse_other_tables(const GazeFile& file, bool is_named);
+
+// The events of a table with one row for each. Throws Error(input) for a file that is no such table.
+std::vector<GazeEvent> read_event_table(const std::string& path);
+
+// Makes the events of the table at `path` events of the log. Those of the same types that the log states itself give
+// way to them, with a warning; those that do not touch the log's time are left out, with a warning.
+void take_events(const std::string& path, RawGaze& raw);
+
+// Packed logs (gzip.cpp).
+
+bool is_gzip(std::string_view bytes);
+// Unpacks all members of a gzip file. Throws Error(input) at `path` for damaged or cut data, and for data that unpack
+// to more than `most_bytes` or more than any recording does (400 times their size and 16 MiB).
+std::string unpack_gzip(std::string_view bytes, const std::string& path, std::uint64_t most_bytes);
+
+// Packs one member without name and time, so that the same text gives the same bytes.
+std::string pack_gzip(std::string_view text);
+
 }  // namespace gazetrace

@@ -9,7 +9,6 @@
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
 #include "gazelog/recordings.hpp"
-#include "gazelog/table_evidence.hpp"
 #include "gazelog/units.hpp"
 
 namespace gazetrace {
@@ -22,7 +21,8 @@ class RowReader {
  public:
   RowReader(const GazeFile& file, const DelimitedTable& table, const ColumnPlan& plan, const GazeColumns& columns,
             ValidityStyle style, const TimeScale& time)
-      : plan_(plan),
+      : table_(table),
+        plan_(plan),
         columns_(columns),
         style_(style),
         validity_(columns, style),
@@ -30,11 +30,10 @@ class RowReader {
                     {"participant", "participant name", "participant id", "subject", "subject id", "session",
                      "session id", "recording", "recording name", "recording id"}),
         others_(file, table, plan),
-        rows_(file, table, std::max(plan.needed_cells(), recordings_.needed_cells())),
+        rows_(file, table, std::max(plan.needed_cells(table), recordings_.needed_cells())),
         time_(time) {
-    for (const GazeSource& source : plan.sources) {
-      has_origins_ = has_origins_ || source.origin[0].has_value();
-    }
+    has_origins_ = std::any_of(plan.sources.begin(), plan.sources.end(),
+                               [](const GazeSource& source) { return source.origin[0].has_value(); });
     has_head_ = plan.head_position[0] && plan.head_rotation[0];
   }
 
@@ -62,16 +61,38 @@ class RowReader {
         read_head(t_ns, raw);
       }
     }
-    repeated_headers = rows_.repeated_headers;
   }
 
-  [[nodiscard]] const ValidityReader& validity() const { return validity_; }
-  [[nodiscard]] const ValidityTally& tally() const { return tally_; }
-  std::size_t repeated_headers = 0;
-  std::size_t repeated_frames = 0;
-
-  [[nodiscard]] const OtherSensors& others() const { return others_; }
-  std::size_t messages = 0;
+  void add_warnings(RawGaze& raw) const {
+    if (rows_.repeated_headers > 0) {
+      raw.warnings.push_back(
+          fmt::format("{}: rows that repeat the header are skipped: {}", raw.source, rows_.repeated_headers));
+    }
+    if (repeated_frames_ > 0) {
+      raw.warnings.push_back(fmt::format("{}: {} rows repeat the sample counter '{}' of the row before; dropped",
+                                         raw.source, repeated_frames_, table_.headings[*plan_.frame].text));
+    }
+    if (messages_ > 0) {
+      add_note(raw, "messages", std::to_string(messages_), Evidence::header, "rows of a time and a text");
+    }
+    if (others_.left_out > 0) {
+      add_note(raw, "rows left out", std::to_string(others_.left_out), Evidence::header,
+               fmt::format("of other sensors, by column '{}'", others_.name()));
+    }
+    const OptionalColumn& validity = plan_.sources.front().validity;
+    if (const std::string good = validity ? tally_.reversed() : ""; !good.empty()) {
+      const std::string setting = fmt::format("`valid-values` {}", good);
+      const std::string problem = tally_.in_words(table_.headings[*validity].text);
+      raw.faults.push_back({"validity", table_.place, problem, "give " + setting, setting, problem});
+    }
+    const auto is_good = [](const RawSample& s) { return s.validity != GazeValidity::lost; };
+    if (validity && std::none_of(raw.rows.begin(), raw.rows.end(), is_good)) {
+      raw.warnings.push_back(
+          fmt::format("{}: no row is valid by column '{}', which holds: {}; say with "
+                      "`valid-values` which of them are good",
+                      raw.source, table_.headings[*validity].text, fmt::join(validity_.seen(), ", ")));
+    }
+  }
 
  private:
   // Rows of a time and a text are messages, which loggers write between those of gaze.
@@ -83,7 +104,7 @@ class RowReader {
       return false;
     }
     add_message(raw, t_ns, std::string(text), rows_.line());
-    ++messages;
+    ++messages_;
     return true;
   }
 
@@ -94,7 +115,7 @@ class RowReader {
     const std::string_view frame = rows_.cell(*plan_.frame);
     const bool repeats = !frame.empty() && frame == last_frame_;
     last_frame_ = frame;
-    repeated_frames += repeats ? 1 : 0;
+    repeated_frames_ += repeats ? 1 : 0;
     return repeats;
   }
 
@@ -162,26 +183,20 @@ class RowReader {
     if (!source.origin[0] || eye == Eye::cyclopean) {
       return;
     }
-    const auto scale = columns_.origin_mm_per_unit;
     Vec3f& origin = eye == Eye::left ? origins.left_mm : origins.right_mm;
-    origin = {static_cast<float>(scale * rows_.number(source.origin[0])),
-              static_cast<float>(scale * rows_.number(source.origin[1])),
-              static_cast<float>(scale * rows_.number(source.origin[2]))};
+    origin = to_float(rows_.vector(source.origin) * columns_.origin_mm_per_unit);
   }
 
   void read_head(std::int64_t t_ns, RawGaze& raw) {
-    const auto vector = [&](const auto& c) {
-      return Vec3d{rows_.number(c[0]), rows_.number(c[1]), rows_.number(c[2])};
-    };
-    const Vec3d position = vector(plan_.head_position) * columns_.head_m_per_unit;
-    const Vec3d rotation = vector(plan_.head_rotation);
-    const Quatd q = plan_.head_rotation[3]
-                        ? Quatd{rotation.x, rotation.y, rotation.z, rows_.number(*plan_.head_rotation[3])}
-                        : quaternion_from_unity_euler_deg(rotation);
+    const Vec3d position = rows_.vector(plan_.head_position) * columns_.head_m_per_unit;
+    const Vec3d rotation = rows_.vector(plan_.head_rotation);
+    const Quatd q = plan_.head_w ? Quatd{rotation.x, rotation.y, rotation.z, rows_.number(*plan_.head_w)}
+                                 : quaternion_from_unity_euler_deg(rotation);
     raw.head.push_back(head_pose_from_axes(t_ns, position, q, columns_.head_axes));
   }
 
   static constexpr float nan_ = std::numeric_limits<float>::quiet_NaN();
+  const DelimitedTable& table_;
   const ColumnPlan& plan_;
   const GazeColumns& columns_;
   ValidityStyle style_;
@@ -194,6 +209,7 @@ class RowReader {
   bool has_origins_ = false;
   bool has_head_ = false;
   std::string last_frame_;
+  std::size_t repeated_frames_ = 0, messages_ = 0;
 };
 
 // .NET counts steps of 100 ns from the year 1, which exceeds int64 nanoseconds, so the stamps are counted from 1970.
@@ -219,41 +235,6 @@ TimeScale time_scale(const GazeFile& file, const DelimitedTable& table, const Co
   return scale;
 }
 
-std::string place_of_header(const RawGaze& raw, const DelimitedTable& table) {
-  return fmt::format("{}:{}", raw.source, table.header_line);
-}
-
-void add_row_warnings(RawGaze& raw, const RowReader& rows, const ColumnPlan& plan, const DelimitedTable& table) {
-  if (rows.repeated_headers > 0) {
-    raw.warnings.push_back(
-        fmt::format("{}: rows that repeat the header are skipped: {}", raw.source, rows.repeated_headers));
-  }
-  if (rows.repeated_frames > 0) {
-    raw.warnings.push_back(fmt::format("{}: {} rows repeat the sample counter '{}' of the row before; dropped",
-                                       raw.source, rows.repeated_frames, table.headings[*plan.frame].text));
-  }
-  if (rows.messages > 0) {
-    add_note(raw, "messages", std::to_string(rows.messages), Evidence::header, "rows of a time and a text");
-  }
-  if (rows.others().left_out > 0) {
-    add_note(raw, "rows left out", std::to_string(rows.others().left_out), Evidence::header,
-             fmt::format("of other sensors, by column '{}'", rows.others().name()));
-  }
-  const OptionalColumn& validity = plan.sources.front().validity;
-  if (const std::string good = validity ? rows.tally().reversed() : ""; !good.empty()) {
-    const std::string setting = fmt::format("`valid-values` {}", good);
-    const std::string problem = rows.tally().in_words(table.headings[*validity].text);
-    raw.faults.push_back({"validity", place_of_header(raw, table), problem, "give " + setting, setting, problem});
-  }
-  const auto is_good = [](const RawSample& s) { return s.validity != GazeValidity::lost; };
-  if (validity && std::none_of(raw.rows.begin(), raw.rows.end(), is_good)) {
-    raw.warnings.push_back(
-        fmt::format("{}: no row is valid by column '{}', which holds: {}; say with "
-                    "`valid-values` which of them are good",
-                    raw.source, table.headings[*validity].text, fmt::join(rows.validity().seen(), ", ")));
-  }
-}
-
 std::string position_columns(const ColumnPlan& plan, const DelimitedTable& table) {
   std::string text;
   for (const GazeSource& source : plan.sources) {
@@ -266,7 +247,7 @@ std::string position_columns(const ColumnPlan& plan, const DelimitedTable& table
 
 void declare_positions(RawGaze& raw, const ColumnPlan& plan, const GazeFile& file, const DelimitedTable& table,
                        const GazeColumns& columns, ValidityStyle style, Evidence declared) {
-  const std::string place = place_of(file, table.header_line);
+  const std::string& place = table.place;
   const std::string names = position_columns(plan, table);
   if (raw.kind == GazeKind::direction) {
     const bool is_default = columns.axes == GazeAxes::automatic;
@@ -305,26 +286,15 @@ void declare_positions(RawGaze& raw, const ColumnPlan& plan, const GazeFile& fil
 }  // namespace
 
 int time_exponent_by_statistics(const GazeFile& file, const DelimitedTable& table, std::size_t column, RawGaze& raw) {
-  const std::string place = place_of(file, table.header_line);
-  std::vector<double> times;
-  TableRows rows(file, table, column + 1);
-  while (times.size() < 2000 && rows.next()) {
-    if (const auto text = rows.cell(column); times.empty() && !number_from(text) && !is_missing(text)) {
-      rows.time_ns(column, {});  // says what a first time is that is no number
-    }
-    if (const auto value = number_from(rows.cell(column))) {
-      times.push_back(*value);
-    }
-  }
-  const auto exponent = guess_time_exponent(times);
+  const auto exponent = guess_time_exponent(first_stamps(file, table, column, true));
   const std::string& name = table.headings[column].text;
   if (!exponent) {
-    throw Error(ErrorKind::input, place,
+    throw Error(ErrorKind::input, table.place,
                 fmt::format("the unit of time column '{}' is not stated and cannot be guessed from its steps", name),
                 "give `time-unit`, or write it into the header: t[ms]");
   }
-  raw.warnings.push_back(fmt::format("{}: guessed from its steps that '{}' is in {}; state it with `time-unit`", place,
-                                     name, time_unit_text(*exponent)));
+  raw.warnings.push_back(fmt::format("{}: guessed from its steps that '{}' is in {}; state it with `time-unit`",
+                                     table.place, name, time_unit_text(*exponent)));
   return *exponent;
 }
 
@@ -334,32 +304,29 @@ RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, con
     throw Error(ErrorKind::input, file.path, "holds no sample",
                 "a gaze log needs a header and at least one row below it");
   }
-  const std::string place = place_of(file, table.header_line);
   if (table.headings.size() < 3) {
-    throw Error(ErrorKind::input, place,
+    throw Error(ErrorKind::input, table.place,
                 fmt::format("'{}' is not a table of time and position", trim(table.header).substr(0, 60)),
                 "separate the cells by commas, semicolons or tabs");
   }
   if (!table.has_header && (columns.time.empty() || (columns.x.empty() && columns.left.x.empty()))) {
-    throw Error(ErrorKind::input, place,
+    throw Error(ErrorKind::input, table.place,
                 fmt::format("there is no header, only {} columns of numbers", table.headings.size()),
                 "say by number which is which: `time-column` 1 `x-column` 2 `y-column` 3");
   }
   const GazetracePreamble preamble = read_preamble(file, table);
   const GazeColumns with_z = style == ValidityStyle::any ? with_z_beside(file, table, columns) : columns;
-  const ColumnPlan plan = plan_columns(table, with_z, place);
-  RawGaze raw;
-  raw.source = file.path;
+  const ColumnPlan plan = plan_columns(table, with_z);
+  RawGaze raw = raw_of(file, preamble.stated.clock, plan.pupil_unit);
+  raw.recording_geometry = preamble.stated.recording_geometry;
+  raw.pixels_per_degree = preamble.stated.pixels_per_degree;
   find_sum_of_eyes(file, table, plan, raw);
   if (columns.x.empty() && style == ValidityStyle::any) {
     find_other_things(table, plan, raw);
   }
   raw.kind = plan.kind;
-  raw.clock = preamble.clock;
-  raw.recording_geometry = preamble.geometry;
-  raw.pixels_per_degree = preamble.pixels_per_degree;
   const std::string sign = style == ValidityStyle::any ? sign_of_scene_camera(table, plan) : "";
-  if (preamble.is_scene_camera || !sign.empty()) {
+  if (preamble.stated.kind == GazeKind::scene_camera || !sign.empty()) {
     raw.way_out = sign.empty() ? "`frame` scene-camera looks at it"
                                : fmt::format(
                                      "column '{}' says so: map gaze onto the display, or look at it with `frame` "
@@ -367,7 +334,6 @@ RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, con
                                      sign);
     raw.kind = GazeKind::scene_camera;
   }
-  raw.pupil_unit = plan.pupil_unit;
   raw.warnings = plan.warnings;
   if (trim(table.body).empty()) {
     throw Error(ErrorKind::input, file.path, "holds no sample", "a gaze log needs at least one row below its header");
@@ -376,7 +342,7 @@ RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, con
   RowReader rows(file, table, plan, columns, style, time);
   rows.read_all(raw);
   declare_positions(raw, plan, file, table, columns, style, evidence);
-  add_row_warnings(raw, rows, plan, table);
+  rows.add_warnings(raw);
   return raw;
 }
 

@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include "gazelog/columns.hpp"
-#include "gazelog/validity.hpp"
 
 namespace gazetrace {
 
@@ -15,17 +14,9 @@ namespace gazetrace {
 // QY QZ QW`.
 struct GazetracePreamble {
   std::optional<int> version;  // N of `# gazetrace-gaze N`
-  std::string clock;
-  bool is_scene_camera = false;  // `# kind scene-camera`
-  std::optional<DisplayGeometry> geometry;
-  std::optional<Vec2d> pixels_per_degree;
-  double nominal_rate_hz = 0;        // `# rate_hz R`; 0: not stated
-  bool sample_age_unknown = false;   // `# sample_age unknown`
-  std::optional<Eye> eye;            // `# eye right`: that whose gaze the cyclopean rows are, or was taken without such
-  std::optional<GazeDevice> device;  // `# device desktop`, where it does not follow from the kind of gaze
-  std::vector<GazeEvent> events;
-  std::vector<GazeCalibration> calibrations;
-  std::vector<HeadPose> head;
+  // Clock and geometry and, of gazetrace CSV, `# rate_hz R`, `# sample_age unknown`, `# device desktop`, `# eye right`
+  // (whose gaze the cyclopean rows are, or that was taken without such), `# kind scene-camera` and the records above.
+  GazeRecord stated;
 };
 // Throws Error(input) for known lines with values that are wrong.
 GazetracePreamble read_preamble(const GazeFile& file, const DelimitedTable& table);
@@ -41,6 +32,13 @@ RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, con
 // The names of three columns: "gaze_" -> gaze_x, gaze_y, gaze_z.
 inline std::tuple<std::string, std::string, std::string> xyz(const std::string& stem) {
   return {stem + "x", stem + "y", stem + "z"};
+}
+
+// Takes the head's pose from columns in Unity's axes, whose names begin so.
+inline void take_unity_head(GazeColumns& c, const std::string& position, const std::string& rotation) {
+  std::tie(c.head_x, c.head_y, c.head_z) = xyz(position);
+  std::tie(c.head_rotation_x, c.head_rotation_y, c.head_rotation_z) = xyz(rotation);
+  c.head_axes = GazeAxes::unity;
 }
 
 // Reads a format that is a table with its own columns: what the user declared overrides `preset`.

@@ -98,7 +98,7 @@ bool read_record(std::string_view key, std::string_view rest, const PreambleLine
     }
     event.text = words.rest();
     event.row = line.line;
-    preamble.events.push_back(std::move(event));
+    preamble.stated.events.push_back(std::move(event));
   } else if (key == "calibration") {
     GazeCalibration calibration;
     calibration.eye = words.one_of({Eye::left, Eye::right, Eye::cyclopean});
@@ -106,7 +106,7 @@ bool read_record(std::string_view key, std::string_view rest, const PreambleLine
     calibration.mean_error_deg = words.number();
     calibration.max_error_deg = words.number();
     calibration.row = line.line;
-    preamble.calibrations.push_back(calibration);
+    preamble.stated.calibrations.push_back(calibration);
   } else if (key == "head") {
     HeadPose pose;
     pose.t_ns = words.time_ns();
@@ -114,15 +114,15 @@ bool read_record(std::string_view key, std::string_view rest, const PreambleLine
                                 &pose.orientation.y, &pose.orientation.z, &pose.orientation.w}) {
       *value = words.number();
     }
-    preamble.head.push_back(pose);
+    preamble.stated.head.push_back(pose);
   } else if (key == "eye") {
-    preamble.eye = words.one_of({Eye::left, Eye::right});
+    preamble.stated.stated_eye = words.one_of({Eye::left, Eye::right});
   } else if (key == "device") {
-    preamble.device = words.one_of({GazeDevice::desktop, GazeDevice::head_mounted});
+    preamble.stated.device = words.one_of({GazeDevice::desktop, GazeDevice::head_mounted});
   } else if (key == "rate_hz") {
-    preamble.nominal_rate_hz = words.number();
+    preamble.stated.nominal_rate_hz = words.number();
   } else if (key == "sample_age") {
-    preamble.sample_age_unknown = rest == "unknown";
+    preamble.stated.sample_age_unknown = rest == "unknown";
   } else {
     return false;
   }
@@ -160,17 +160,15 @@ void read_line(const PreambleLine& preamble_line, const std::string& place, Gaze
     return values;
   };
   const auto geometry = [&]() -> DisplayGeometry& {
-    if (!preamble.geometry) {
-      preamble.geometry.emplace();
-    }
-    return *preamble.geometry;
+    std::optional<DisplayGeometry>& stated = preamble.stated.recording_geometry;
+    return stated ? *stated : stated.emplace();
   };
   if (key == "gazetrace-gaze") {
     preamble.version = static_cast<int>(std::min(numbers(1, true)[0], 1e9));
   } else if (key == "clock") {
-    preamble.clock = rest;
+    preamble.stated.clock = rest;
   } else if (key == "kind") {
-    preamble.is_scene_camera = rest == to_string(GazeKind::scene_camera);
+    preamble.stated.kind = rest == to_string(GazeKind::scene_camera) ? GazeKind::scene_camera : GazeKind::screen;
   } else if (key == "display_px") {
     const auto px = numbers(2, true);
     if (px[0] != std::floor(px[0]) || px[1] != std::floor(px[1]) || px[0] > 1e6 || px[1] > 1e6) {
@@ -187,7 +185,7 @@ void read_line(const PreambleLine& preamble_line, const std::string& place, Gaze
     geometry().distance_cm = numbers(1, true)[0] / (key == "distance_mm" ? 10.0 : 1.0);
   } else if (key == "pixels_per_degree") {
     const auto density = numbers(2, true);
-    preamble.pixels_per_degree = Vec2d{density[0], density[1]};
+    preamble.stated.pixels_per_degree = Vec2d{density[0], density[1]};
   } else if (key == "eye_cm") {
     const auto offset = numbers(2, false);
     geometry().eye_x_cm = offset[0];

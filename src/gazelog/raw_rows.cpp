@@ -7,19 +7,11 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <utility>
 
 namespace gazetrace {
 namespace {
 
 constexpr std::int32_t kNoNumber = std::numeric_limits<std::int32_t>::min();  // stands for NaN
-
-template <class T>
-T loaded(const std::vector<std::uint8_t>& bytes, std::size_t i) {
-  T value;
-  std::memcpy(&value, bytes.data() + i * sizeof(T), sizeof(T));
-  return value;
-}
 
 std::uint8_t bytes_for(std::uint64_t most) {
   return most == 0 ? 0 : most <= 0xFF ? 1 : most <= 0xFFFF ? 2 : most <= 0xFFFFFFFF ? 4 : 8;
@@ -60,32 +52,19 @@ void RawRows::Integers::pack(const std::array<std::int64_t, kRowsOfBlock>& value
     return static_cast<std::uint64_t>(value) - static_cast<std::uint64_t>(least_);
   };
   width_ = bytes_for(above(*most));
-  above_least_.resize(values.size() * width_);
+  above_least_.resize(values.size() * width_ + sizeof(std::uint64_t));  // whole words are read
   for (std::size_t i = 0; i < values.size() && width_ > 0; ++i) {
     const std::uint64_t value = above(values[i]);
-    for (std::size_t byte = 0; byte < width_; ++byte) {
-      above_least_[i * width_ + byte] = static_cast<std::uint8_t>(value >> (8 * byte));
-    }
+    std::memcpy(above_least_.data() + i * width_, &value, width_);
   }
 }
 
 std::int64_t RawRows::Integers::operator[](std::size_t i) const {
   static_assert(std::endian::native == std::endian::little);
-  const auto plus = [&](std::uint64_t above) {
-    return static_cast<std::int64_t>(static_cast<std::uint64_t>(least_) + above);
-  };
-  switch (width_) {
-    case 0:
-      return least_;
-    case 1:
-      return plus(above_least_[i]);
-    case 2:
-      return plus(loaded<std::uint16_t>(above_least_, i));
-    case 4:
-      return plus(loaded<std::uint32_t>(above_least_, i));
-    default:
-      return plus(loaded<std::uint64_t>(above_least_, i));
-  }
+  std::uint64_t above = 0;
+  std::memcpy(&above, above_least_.data() + i * width_, sizeof(above));
+  above &= width_ == 0 ? 0 : ~std::uint64_t{0} >> (8U * (sizeof(above) - width_));
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(least_) + above);
 }
 
 void RawRows::Decimals::pack(const std::array<double, kRowsOfBlock>& values) {

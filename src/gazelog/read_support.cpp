@@ -3,14 +3,23 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
+#include "core/text.hpp"
 #include "gazelog/row_samples.hpp"
 #include "gazelog/units.hpp"
 
 namespace gazetrace {
+
+RawGaze raw_of(const GazeFile& file, std::string clock, std::string pupil_unit) {
+  RawGaze raw;
+  raw.source = file.path;
+  raw.clock = std::move(clock);
+  raw.pupil_unit = std::move(pupil_unit);
+  return raw;
+}
 
 void add_note(RawGaze& raw, std::string what, std::string value, Evidence evidence, std::string detail) {
   raw.notes.push_back({std::move(what), std::move(value), evidence, std::move(detail)});
@@ -37,6 +46,22 @@ void guess_picture_size(RawGaze& raw) {
            fmt::format("places reach {:.0f} px", widest));
 }
 
+std::vector<double> first_stamps(const GazeFile& file, const DelimitedTable& table, std::size_t column,
+                                 bool is_checked) {
+  constexpr std::size_t kEnough = 2000;
+  std::vector<double> stamps;
+  TableRows rows(file, table, column + 1);
+  while (stamps.size() < kEnough && rows.next()) {
+    const std::string_view text = rows.cell(column);
+    if (const auto value = number_from(text)) {
+      stamps.push_back(*value);
+    } else if (is_checked && stamps.empty() && !is_missing(text)) {
+      rows.time_ns(column, {});  // says what it is
+    }
+  }
+  return stamps;
+}
+
 TimeScale declare_time(RawGaze& raw, const GazeReadOptions& options, std::string_view column, int stated,
                        Evidence evidence, const std::string& place) {
   const auto given = time_exponent_of(options.columns.time_unit);
@@ -49,19 +74,6 @@ TimeScale declare_time(RawGaze& raw, const GazeReadOptions& options, std::string
       std::string(column), options.columns.time.empty() ? Evidence::header : Evidence::option, {}};
   raw.declared.time_exponent = {given.value_or(stated), given ? Evidence::option : evidence, {}};
   return {raw.declared.time_exponent.value, 0};
-}
-
-std::size_t time_column(const DelimitedTable& table, const GazeReadOptions& options, std::size_t own,
-                        const std::string& place) {
-  return options.columns.time.empty() ? own : declared_column(table, options.columns.time, place);
-}
-
-std::size_t cells_up_to(std::initializer_list<std::optional<std::size_t>> columns) {
-  std::size_t cells = 0;
-  for (const std::optional<std::size_t>& column : columns) {
-    cells = std::max(cells, column ? *column + 1 : 0);
-  }
-  return cells;
 }
 
 double least_confidence(const GazeReadOptions& options, double own) {
@@ -134,23 +146,10 @@ Quatd quaternion_from_unity_euler_deg(const Vec3d& rotation) {
 
 HeadPose head_pose_from_axes(std::int64_t t_ns, const Vec3d& position_m, const Quatd& orientation, GazeAxes axes) {
   const Quatd& q = orientation;
-  switch (axes) {
-    case GazeAxes::automatic:
-    case GazeAxes::gl:
-      return {t_ns, position_m, q};
-    case GazeAxes::unity:
-      // World and head are both mirrored by diag(1, 1, -1): rotations about x and y turn the other way.
-      return {t_ns, from_axes(position_m, axes), {-q.x, -q.y, q.z, q.w}};
-    case GazeAxes::sranipal:
-      // A turn by 180 degrees about y of world and head: rotations about x and z turn the other way.
-      return {t_ns, from_axes(position_m, axes), {-q.x, q.y, -q.z, q.w}};
-    case GazeAxes::cv:
-      return {t_ns, from_axes(position_m, axes), {q.x, -q.y, -q.z, q.w}};
-    case GazeAxes::unreal:
-      // Its three axes become others, one of them the other way round, so that all rotations turn the other way.
-      return {t_ns, from_axes(position_m, axes), {-q.y, -q.z, q.x, q.w}};
-  }
-  return {t_ns, position_m, q};
+  // Axes of the other handedness are mirrored: rotations about what is not mirrored turn the other way.
+  const bool is_left_handed = axes == GazeAxes::unity || axes == GazeAxes::unreal;
+  const Vec3d turn = from_axes({q.x, q.y, q.z}, axes) * (is_left_handed ? -1.0 : 1.0);
+  return {t_ns, from_axes(position_m, axes), {turn.x, turn.y, turn.z, q.w}};
 }
 
 void LabelRuns::add(GazeEventType type, Eye eye, std::string_view key, std::int64_t t_ns, std::int64_t row,
@@ -182,8 +181,8 @@ void LabelRuns::finish(RawGaze& raw) {
   raw.events.insert(raw.events.end(), events_.begin(), events_.end());
 }
 
-void label_by_ids(TableRows& rows, const std::optional<std::size_t>& blink, const std::optional<std::size_t>& fixation,
-                  RawSample& sample, LabelRuns& runs) {
+void label_by_ids(TableRows& rows, const OptionalColumn& blink, const OptionalColumn& fixation, RawSample& sample,
+                  LabelRuns& runs) {
   if (const std::string_view blink_id = rows.cell(blink); !is_missing(blink_id)) {
     sample.validity = GazeValidity::blink;
     runs.add(GazeEventType::blink, Eye::cyclopean, blink_id, sample.t_ns, sample.row);
@@ -194,27 +193,17 @@ void label_by_ids(TableRows& rows, const std::optional<std::size_t>& blink, cons
   }
 }
 
+RawSample missing_row(std::int64_t t_ns, std::int64_t row, Eye eye) {
+  const auto unknown = static_cast<float>(kNan);
+  return {t_ns, {kNan, kNan, kNan}, GazeValidity::lost, eye, unknown, unknown, row};
+}
+
 RawSample position_row(std::int64_t t_ns, std::int64_t row, Eye eye, const Vec2d& at, double pupil) {
-  RawSample sample;
-  sample.t_ns = t_ns;
-  sample.row = row;
-  sample.eye = eye;
-  sample.confidence = static_cast<float>(kNan);
+  RawSample sample = missing_row(t_ns, row, eye);
   sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);
   const bool is_known = !std::isnan(at.x) && !std::isnan(at.y);
   sample.at = is_known ? Vec3d{at.x, at.y, 0} : Vec3d{kNan, kNan, 0};
   sample.validity = is_known ? GazeValidity::ok : GazeValidity::lost;
-  return sample;
-}
-
-RawSample missing_row(std::int64_t t_ns, std::int64_t row, Eye eye) {
-  RawSample sample;
-  sample.t_ns = t_ns;
-  sample.row = row;
-  sample.eye = eye;
-  sample.validity = GazeValidity::lost;
-  sample.confidence = sample.pupil = static_cast<float>(kNan);
-  sample.at = {kNan, kNan, kNan};
   return sample;
 }
 

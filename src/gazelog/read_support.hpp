@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +12,9 @@
 #include "gazelog/table.hpp"
 
 namespace gazetrace {
+
+// The raw gaze of a file, without rows yet.
+RawGaze raw_of(const GazeFile& file, std::string clock, std::string pupil_unit = {});
 
 // Adds a fact that the file states, in words for people.
 void add_note(RawGaze& raw, std::string what, std::string value, Evidence evidence, std::string detail = {});
@@ -23,16 +25,14 @@ void state_display_px(RawGaze& raw, double width, double height, Evidence eviden
 // The picture of Pupil Labs' scene camera is 1088 x 1080 for Invisible, 1600 x 1200 for Neon; many files do not say.
 void guess_picture_size(RawGaze& raw);
 
+// The first stamps of a table as they are written, for guesses. `is_checked`: throws Error(input) for a first one that
+// is no number, saying what it is.
+std::vector<double> first_stamps(const GazeFile& file, const DelimitedTable& table, std::size_t column,
+                                 bool is_checked = false);
+
 // Declares the column and the unit of the stamps: the unit that the user gave or, without one, `stated`.
 TimeScale declare_time(RawGaze& raw, const GazeReadOptions& options, std::string_view column, int stated,
                        Evidence evidence, const std::string& place);
-
-// The column of the stamps of a table: the column that the user named or, without one, the format's own.
-std::size_t time_column(const DelimitedTable& table, const GazeReadOptions& options, std::size_t own,
-                        const std::string& place);
-
-// How many cells a row must have to hold all of these columns, of which a table may lack some.
-std::size_t cells_up_to(std::initializer_list<std::optional<std::size_t>> columns);
 
 // The confidence from which on a sample is used: the one that the user gave or, without one, the format's own.
 double least_confidence(const GazeReadOptions& options, double own);
@@ -92,8 +92,8 @@ class LabelRuns {
 
 // Labels a row of Pupil Cloud by its `blink id` or, where it has none, its `fixation id`. During a blink the gaze that
 // the row states means nothing.
-void label_by_ids(TableRows& rows, const std::optional<std::size_t>& blink, const std::optional<std::size_t>& fixation,
-                  RawSample& sample, LabelRuns& runs);
+void label_by_ids(TableRows& rows, const OptionalColumn& blink, const OptionalColumn& fixation, RawSample& sample,
+                  LabelRuns& runs);
 
 // A row with a position on a display, of a format that has no confidence. A pupil that is not above 0 is missing. Where
 // a coordinate is missing, the other one is taken for missing as well, and the eye is lost.

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <utility>
 
@@ -66,10 +65,8 @@ void count_rows(RawGaze& raw) {
 
 // The number of `choice` among the recordings, from 0.
 std::size_t number_of(const RawGaze& raw, const std::string& choice) {
-  std::size_t number = 0;
-  const auto [rest, status] = std::from_chars(choice.data(), choice.data() + choice.size(), number);
-  const std::size_t count = std::max<std::size_t>(raw.recordings.size(), 1);
-  if (status == std::errc{} && rest == choice.data() + choice.size() && number >= 1 && number <= count) {
+  const std::size_t number = count_from(choice).value_or(0);
+  if (number >= 1 && number <= std::max<std::size_t>(raw.recordings.size(), 1)) {
     return number - 1;
   }
   for (std::size_t i = 0; i < raw.recordings.size(); ++i) {
@@ -153,7 +150,7 @@ void begin_block(RawGaze& raw, std::int64_t line) {
 RecordingColumns::RecordingColumns(const DelimitedTable& table, const std::string& declared,
                                    std::initializer_list<std::string_view> names) {
   if (!declared.empty()) {
-    columns_ = {declared_column(table, declared, table.place)};
+    columns_ = {declared_column(table, declared)};
   } else {
     for (const std::string_view name : names) {
       if (const auto column = table.find(name)) {

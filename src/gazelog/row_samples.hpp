@@ -66,4 +66,10 @@ class RowSamples {
 // eye. These words are never parsed again.
 std::vector<GazeFact> facts_in_words(const RawGaze& raw, const Conventions& conventions);
 
+SceneLens load_scene_lens(const std::string& path);  // scene_camera.json; Error(input)
+
+// The unit vector of a pixel, with +x right, +y down, +z forward. It is undistorted by fixed-point iteration, as in
+// OpenCV.
+Vec3d ray_of(const SceneLens& lens, const Vec2d& pixel);
+
 }  // namespace gazetrace

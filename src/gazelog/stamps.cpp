@@ -11,93 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "core/nan.hpp"
 #include "core/statistics.hpp"
 #include "gazelog/recordings.hpp"
 
 namespace gazetrace {
-namespace {
-
-bool same(double x, double y) {
-  return x == y || (std::isnan(x) && std::isnan(y));
-}
-
-bool is_same_place(const Vec3d& a, const Vec3d& b) {
-  return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z);
-}
-
-}  // namespace
-
-std::string unordered_problem(const GazeOrder& order) {
-  return fmt::format("time {} ns is before that of line {} ({} ns)", order.first_backward_ns, order.row_before,
-                     order.before_ns);
-}
-
-std::string duplicate_problem(const GazeOrder& order) {
-  return fmt::format("time {} ns repeats that of line {}", order.first_duplicate_ns, order.row_repeated);
-}
-
-bool loses_much(const GazeOrder& order) {
-  constexpr double kFewPerCent = 0.03;
-  const std::size_t lost = order.duplicates - order.identical_duplicates;
-  return static_cast<double>(lost) > kFewPerCent * static_cast<double>(order.rows);
-}
-
-std::vector<std::size_t> rows_by_time(const RawRows& rows, UnorderedPolicy policy, GazeLog& log) {
-  GazeOrder& order = log.order;
-  order.rows = rows.size();
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    const std::int64_t before_ns = rows.t_ns(i - 1);
-    const std::int64_t t_ns = rows.t_ns(i);
-    if (t_ns >= before_ns) {
-      continue;
-    }
-    if (order.backward_steps++ == 0) {
-      order.first_backward_row = rows[i].row;
-      order.first_backward_ns = t_ns;
-      order.row_before = rows[i - 1].row;
-      order.before_ns = before_ns;
-    }
-    std::int64_t back_ns = 0;
-    if (__builtin_sub_overflow(before_ns, t_ns, &back_ns)) {
-      back_ns = std::numeric_limits<std::int64_t>::max();
-    }
-    order.longest_backward_ns = std::max(order.longest_backward_ns, back_ns);
-  }
-  std::vector<std::size_t> by_time;
-  if (order.backward_steps > 0) {
-    if (policy == UnorderedPolicy::error) {
-      throw Error(ErrorKind::input, fmt::format("{}:{}", log.source, order.first_backward_row),
-                  unordered_problem(order), "sort the log, or use `order` sort");
-    }
-    by_time.resize(rows.size());
-    std::iota(by_time.begin(), by_time.end(), std::size_t{0});
-    std::stable_sort(by_time.begin(), by_time.end(),
-                     [&](std::size_t a, std::size_t b) { return rows.t_ns(a) < rows.t_ns(b); });
-    log.warnings.push_back(fmt::format("{}: sorted by time; {} {} backwards", log.source, order.backward_steps,
-                                       order.backward_steps == 1 ? "step went" : "steps went"));
-  }
-  return by_time;
-}
-
-void refuse_duplicates(UnorderedPolicy policy, GazeLog& log) {
-  const GazeOrder& order = log.order;
-  if (order.duplicates == 0) {
-    return;
-  }
-  if (policy == UnorderedPolicy::error) {
-    const std::size_t kept = order.rows - order.duplicates;
-    throw Error(ErrorKind::input, fmt::format("{}:{}", log.source, order.first_duplicate_row), duplicate_problem(order),
-                loses_much(order) ? fmt::format("dropping repeats would keep only {} of {} rows: export again with "
-                                                "stamps that differ, or look at it with 'gazetrace gaze inspect'",
-                                                kept, order.rows)
-                                  : fmt::format("remove one of them, or use `order` sort, which keeps the last "
-                                                "of equal stamps, {} of {} rows",
-                                                kept, order.rows));
-  }
-  log.warnings.push_back(fmt::format("{}: {} {} dropped: the last row of equal times is kept", log.source,
-                                     order.duplicates, order.duplicates == 1 ? "duplicate was" : "duplicates were"));
-}
-
 namespace {
 
 // A step back in time: the index of the row behind it.
@@ -148,17 +66,6 @@ std::int64_t overflow_ns(const RawGaze& raw, const Stamps& stamps, const Backwar
     }
   }
   return 0;
-}
-
-template <class Change>
-void change_times(RawRows& rows, const Change& change) {
-  RawRows changed;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    RawSample row = rows[i];
-    row.t_ns = change(i, row.t_ns);
-    changed.push_back(row);
-  }
-  rows = std::move(changed);
 }
 
 void add_fault(RawGaze& raw, const std::string& code, std::size_t row, const std::string& problem,
@@ -231,7 +138,87 @@ void divide_at_restarts(RawGaze& raw, const Stamps& stamps) {
   }
 }
 
+// A difference of integers: nanoseconds from 1970 do not fit into a double. A log is shorter than int64 counts.
+std::int64_t step_ns(const GazeLog& log, std::size_t sample) {
+  return log.samples[sample].t_ns - log.samples[sample - 1].t_ns;
+}
+
 }  // namespace
+
+bool is_same_place(const Vec3d& a, const Vec3d& b) {
+  return same_or_unknown(a.x, b.x) && same_or_unknown(a.y, b.y) && same_or_unknown(a.z, b.z);
+}
+
+std::string unordered_problem(const GazeOrder& order) {
+  return fmt::format("time {} ns is before that of line {} ({} ns)", order.first_backward_ns, order.row_before,
+                     order.before_ns);
+}
+
+std::string duplicate_problem(const GazeOrder& order) {
+  return fmt::format("time {} ns repeats that of line {}", order.first_duplicate_ns, order.row_repeated);
+}
+
+bool loses_much(const GazeOrder& order) {
+  constexpr double kFewPerCent = 0.03;
+  const std::size_t lost = order.duplicates - order.identical_duplicates;
+  return static_cast<double>(lost) > kFewPerCent * static_cast<double>(order.rows);
+}
+
+std::vector<std::size_t> rows_by_time(const RawRows& rows, UnorderedPolicy policy, GazeLog& log) {
+  GazeOrder& order = log.order;
+  order.rows = rows.size();
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const std::int64_t before_ns = rows.t_ns(i - 1);
+    const std::int64_t t_ns = rows.t_ns(i);
+    if (t_ns >= before_ns) {
+      continue;
+    }
+    if (order.backward_steps++ == 0) {
+      order.first_backward_row = rows[i].row;
+      order.first_backward_ns = t_ns;
+      order.row_before = rows[i - 1].row;
+      order.before_ns = before_ns;
+    }
+    std::int64_t back_ns = 0;
+    if (__builtin_sub_overflow(before_ns, t_ns, &back_ns)) {
+      back_ns = std::numeric_limits<std::int64_t>::max();
+    }
+    order.longest_backward_ns = std::max(order.longest_backward_ns, back_ns);
+  }
+  std::vector<std::size_t> by_time;
+  if (order.backward_steps > 0) {
+    if (policy == UnorderedPolicy::error) {
+      throw Error(ErrorKind::input, fmt::format("{}:{}", log.source, order.first_backward_row),
+                  unordered_problem(order), "sort the log, or use `order` sort");
+    }
+    by_time.resize(rows.size());
+    std::iota(by_time.begin(), by_time.end(), std::size_t{0});
+    std::stable_sort(by_time.begin(), by_time.end(),
+                     [&](std::size_t a, std::size_t b) { return rows.t_ns(a) < rows.t_ns(b); });
+    log.warnings.push_back(fmt::format("{}: sorted by time; {} {} backwards", log.source, order.backward_steps,
+                                       order.backward_steps == 1 ? "step went" : "steps went"));
+  }
+  return by_time;
+}
+
+void refuse_duplicates(UnorderedPolicy policy, GazeLog& log) {
+  const GazeOrder& order = log.order;
+  if (order.duplicates == 0) {
+    return;
+  }
+  if (policy == UnorderedPolicy::error) {
+    const std::size_t kept = order.rows - order.duplicates;
+    throw Error(ErrorKind::input, fmt::format("{}:{}", log.source, order.first_duplicate_row), duplicate_problem(order),
+                loses_much(order) ? fmt::format("dropping repeats would keep only {} of {} rows: export again with "
+                                                "stamps that differ, or look at it with 'gazetrace gaze inspect'",
+                                                kept, order.rows)
+                                  : fmt::format("remove one of them, or use `order` sort, which keeps the last "
+                                                "of equal stamps, {} of {} rows",
+                                                kept, order.rows));
+  }
+  log.warnings.push_back(fmt::format("{}: {} {} dropped: the last row of equal times is kept", log.source,
+                                     order.duplicates, order.duplicates == 1 ? "duplicate was" : "duplicates were"));
+}
 
 std::string words_of_restart(const RawGaze& raw) {
   return raw.clock_restarts_row == 0
@@ -259,11 +246,11 @@ void mend_stamps(RawGaze& raw, UnorderedPolicy policy) {
                 "`order` pairs");
     } else {
       const auto half_ns = static_cast<std::int64_t>(stamps.step_ns / 2);
-      const RawRows& rows = raw.rows;
       bool is_second = false;
-      change_times(raw.rows, [&](std::size_t i, std::int64_t t_ns) {
-        is_second = i > 0 && !is_second && t_ns == rows.t_ns(i - 1);
-        return is_second ? t_ns + half_ns : t_ns;
+      raw.rows.change_each([&](std::size_t i, RawSample row) {
+        is_second = i > 0 && !is_second && row.t_ns == raw.rows.t_ns(i - 1);
+        row.t_ns += is_second ? half_ns : 0;
+        return row;
       });
     }
     return;
@@ -277,12 +264,13 @@ void mend_stamps(RawGaze& raw, UnorderedPolicy policy) {
     } else {
       auto step = stamps.backward.begin();
       std::int64_t added_ns = 0;
-      change_times(raw.rows, [&](std::size_t i, std::int64_t t_ns) {
+      raw.rows.change_each([&](std::size_t i, RawSample row) {
         if (step != stamps.backward.end() && step->row == i) {
           added_ns += overflow_ns(raw, stamps, *step);
           ++step;
         }
-        return t_ns + added_ns;
+        row.t_ns += added_ns;
+        return row;
       });
     }
     return;
@@ -313,6 +301,67 @@ void align_origins(GazeLog& log) {
     }
     log.origins.push_back(joined);
   }
+}
+
+std::vector<std::size_t> section_starts(const GazeLog& log) {
+  std::vector<std::size_t> starts{0};
+  for (const GazeEvent& event : log.events) {
+    if (event.type != GazeEventType::segment) {
+      continue;
+    }
+    const auto first = std::lower_bound(log.samples.begin(), log.samples.end(), event.begin_ns,
+                                        [](const GazeSample& sample, std::int64_t t) { return sample.t_ns < t; });
+    if (first != log.samples.end()) {
+      starts.push_back(static_cast<std::size_t>(first - log.samples.begin()));
+    }
+  }
+  std::sort(starts.begin(), starts.end());
+  starts.erase(std::unique(starts.begin(), starts.end()), starts.end());
+  return starts;
+}
+
+GazeTiming measure_timing(const GazeLog& log) {
+  GazeTiming timing;
+  timing.first_ns = log.samples.front().t_ns;
+  timing.last_ns = log.samples.back().t_ns;
+  timing.nominal_rate_hz = log.nominal_rate_hz;
+  std::vector<double> steps;
+  steps.reserve(log.samples.size());
+  for (std::size_t i = 1; i < log.samples.size(); ++i) {
+    steps.push_back(static_cast<double>(step_ns(log, i)));
+  }
+  if (steps.empty()) {
+    return timing;
+  }
+  const double median = lower_quantile(steps, 0.5);
+  timing.step_q1_ns = lower_quantile(steps, 0.25);
+  timing.step_q3_ns = lower_quantile(steps, 0.75);
+  timing.median_rate_hz = median > 0 ? 1e9 / median : 0;
+  RunningSpread between_gaps;
+  for (const double step : steps) {
+    if (!(step > kGapInSteps * median)) {
+      between_gaps.add(step);
+    }
+  }
+  const std::vector<std::size_t> starts = section_starts(log);
+  auto start = starts.begin();
+  for (std::size_t i = 1; i < log.samples.size(); ++i) {
+    while (start != starts.end() && *start < i) {
+      ++start;
+    }
+    const std::int64_t step = step_ns(log, i);
+    if (!(static_cast<double>(step) > kGapInSteps * median)) {
+      continue;
+    }
+    const bool is_pause = start != starts.end() && *start == i;
+    ++(is_pause ? timing.pauses : timing.gaps);
+    std::int64_t& total_ns = is_pause ? timing.pauses_total_ns : timing.gaps_total_ns;
+    total_ns += step;
+    timing.longest_gap_ns = is_pause ? timing.longest_gap_ns : std::max(timing.longest_gap_ns, step);
+  }
+  timing.mean_rate_hz = between_gaps.mean() > 0 ? 1e9 / between_gaps.mean() : 0;
+  timing.jitter_ns = between_gaps.deviation();
+  return timing;
 }
 
 }  // namespace gazetrace

@@ -3,6 +3,7 @@
 // at each time.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "gazetrace/gaze_raw.hpp"
@@ -14,6 +15,9 @@ namespace gazetrace {
 void mend_stamps(RawGaze& raw, UnorderedPolicy policy);
 // "the clock starts again in line 7: ", or nothing.
 std::string words_of_restart(const RawGaze& raw);
+
+// Whether two places are the same in every number, of which some may be unknown in both.
+bool is_same_place(const Vec3d& a, const Vec3d& b);
 
 // Whether keeping one of equal stamps would lose more than a few per cent of the rows.
 bool loses_much(const GazeOrder& order);
@@ -30,5 +34,15 @@ std::string duplicate_problem(const GazeOrder& order);
 // Origins come in the order of the file, where each eye may have a row of its own. Afterwards there is one for each
 // sample.
 void align_origins(GazeLog& log);
+
+// A step between neighbouring samples that is longer than this many median steps is a gap.
+inline constexpr double kGapInSteps = 3;
+
+// The samples with which a section begins that was recorded without a pause: the first one, and those that are the
+// first at or after the begin of a segment of the recording. Increasing; of a log with at least one sample.
+std::vector<std::size_t> section_starts(const GazeLog& log);
+
+// The timing of a log with at least one sample.
+GazeTiming measure_timing(const GazeLog& log);
 
 }  // namespace gazetrace

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -14,15 +13,6 @@
 
 namespace gazetrace {
 namespace {
-
-char choose_separator(std::string_view header) {
-  for (const char separator : {'\t', ';'}) {
-    if (header.find(separator) != std::string_view::npos) {
-      return separator;
-    }
-  }
-  return ',';
-}
 
 bool is_number_row(const std::vector<std::string_view>& cells) {
   std::string buffer;
@@ -68,16 +58,30 @@ bool is_row(std::string_view line) {
   return !text.empty() && text.front() != '#';
 }
 
-std::optional<std::size_t> first_called(const std::vector<ColumnHeading>& headings, std::string_view name) {
-  const std::string wanted = letters_and_digits(name);
+// By its whole text or its name, of which `normal` makes what is compared.
+template <class Normal>
+OptionalColumn first_called(const std::vector<ColumnHeading>& headings, const std::string& wanted,
+                            const Normal& normal) {
   for (const auto part : {&ColumnHeading::text, &ColumnHeading::name}) {
     for (std::size_t i = 0; i < headings.size(); ++i) {
-      if (letters_and_digits(headings[i].*part) == wanted) {
+      if (normal(headings[i].*part) == wanted) {
         return i;
       }
     }
   }
   return std::nullopt;
+}
+
+OptionalColumn first_called(const std::vector<ColumnHeading>& headings, std::string_view name) {
+  return first_called(headings, letters_and_digits(name), letters_and_digits);
+}
+
+std::vector<std::string> texts_of(const DelimitedTable& table) {
+  std::vector<std::string> texts;
+  for (const ColumnHeading& heading : table.headings) {
+    texts.push_back(heading.text);
+  }
+  return texts;
 }
 
 constexpr std::string_view kThousandsRemedy =
@@ -132,6 +136,10 @@ bool is_known_unit(std::string_view text) {
 }
 
 }  // namespace
+
+char separator_of(std::string_view line, char otherwise) {
+  return line.find('\t') != std::string_view::npos ? '\t' : line.find(';') != std::string_view::npos ? ';' : otherwise;
+}
 
 std::string letters_and_digits(std::string_view text) {
   std::string kept;
@@ -207,7 +215,7 @@ void DelimitedTable::check_unique(std::size_t column) const {
   }
 }
 
-std::optional<std::size_t> DelimitedTable::find(std::string_view name) const {
+OptionalColumn DelimitedTable::find(std::string_view name) const {
   const auto found = first_called(headings, name);
   if (found) {
     check_unique(*found);
@@ -215,7 +223,7 @@ std::optional<std::size_t> DelimitedTable::find(std::string_view name) const {
   return found;
 }
 
-std::optional<std::size_t> DelimitedTable::find_any(std::initializer_list<std::string_view> names) const {
+OptionalColumn DelimitedTable::find_any(std::initializer_list<std::string_view> names) const {
   for (const std::string_view name : names) {
     if (const auto found = find(name)) {
       return found;
@@ -232,6 +240,7 @@ bool DelimitedTable::has_all(std::initializer_list<std::string_view> names) cons
 DelimitedTable open_table(const GazeFile& file) {
   constexpr std::size_t kMostColumns = 16384;
   DelimitedTable table;
+  table.place = place_of(file, 0);
   table.has_quotes = file.text.find('"') != std::string::npos;
   LineReader lines(file.text);
   for (std::string_view line; lines.next(line);) {
@@ -243,7 +252,7 @@ DelimitedTable open_table(const GazeFile& file) {
       table.preamble.push_back({text, lines.number()});
       continue;
     }
-    table.separator = choose_separator(line);
+    table.separator = separator_of(line, ',');
     std::vector<std::string_view> cells;
     split_cells(line, table.separator, cells);
     table.has_header = !is_number_row(cells);
@@ -281,36 +290,33 @@ DelimitedTable open_headerless(std::string_view text, char separator, const std:
   return table;
 }
 
-std::size_t declared_column(const DelimitedTable& table, const std::string& name, const std::string& place) {
+std::size_t declared_column(const DelimitedTable& table, const std::string& name) {
   const std::string wanted = to_lower(trim(name));
-  for (const auto part : {&ColumnHeading::text, &ColumnHeading::name}) {
-    for (std::size_t i = 0; i < table.headings.size(); ++i) {
-      if (to_lower(table.headings[i].*part) == wanted) {
-        table.check_unique(i);
-        return i;
-      }
-    }
+  if (const OptionalColumn found = first_called(table.headings, wanted, to_lower)) {
+    table.check_unique(*found);
+    return *found;
   }
-  std::size_t number = 0;
-  const auto [rest, status] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
-  if (status == std::errc{} && rest == wanted.data() + wanted.size() && number >= 1 &&
-      number <= table.headings.size()) {
+  if (const std::size_t number = count_from(wanted).value_or(0); number >= 1 && number <= table.headings.size()) {
     return number - 1;
   }
-  std::vector<std::string> names;
-  for (const ColumnHeading& heading : table.headings) {
-    names.push_back(heading.text);
-  }
-  throw Error(ErrorKind::input, place, unknown_name_message("column", name, names));
+  throw Error(ErrorKind::input, table.place, unknown_name_message("column", name, texts_of(table)));
 }
 
 std::string column_listing(const DelimitedTable& table) {
-  std::vector<std::string> texts;
-  texts.reserve(table.headings.size());
-  for (const ColumnHeading& heading : table.headings) {
-    texts.push_back(heading.text);
+  return fmt::format("{}", fmt::join(texts_of(table), ", "));
+}
+
+std::size_t UsedColumns::require(std::string_view name, std::string_view remedy) {
+  const OptionalColumn found = find(name);
+  if (!found) {
+    throw Error(ErrorKind::input, table_.place, fmt::format("there is no column '{}'", name),
+                remedy.empty() ? "the columns are: " + column_listing(table_) : std::string(remedy));
   }
-  return fmt::format("{}", fmt::join(texts, ", "));
+  return *found;
+}
+
+std::size_t UsedColumns::time(const GazeReadOptions& options, std::size_t own) {
+  return *use(options.columns.time.empty() ? own : declared_column(table_, options.columns.time));
 }
 
 TableRows::TableRows(const GazeFile& file, const DelimitedTable& table, std::size_t needed)

@@ -2,6 +2,8 @@
 // Logs in rows and columns: a preamble of `#` lines, a header, and cells between commas, semicolons or tabs.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
@@ -24,6 +26,12 @@ std::string letters_and_digits(std::string_view text);  // in lower case, ASCII 
 // Empty cells, ".", "n/a", "NaN", "-nan(ind)", "None", ...
 bool is_missing(std::string_view text);
 
+using OptionalColumn = std::optional<std::size_t>;
+using VectorColumns = std::array<OptionalColumn, 3>;  // of x, y and z
+
+// The separator of a line of cells: a tab or else a semicolon, where it has one, or else `otherwise`.
+char separator_of(std::string_view line, char otherwise);
+
 struct PreambleLine {
   std::string_view text;
   std::int64_t line = 0;
@@ -43,8 +51,8 @@ struct DelimitedTable {
 
   // Finds a column by its whole text or its name, ignoring blanks, punctuation and case. Throws Error(input) where two
   // columns have that name.
-  [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
-  [[nodiscard]] std::optional<std::size_t> find_any(std::initializer_list<std::string_view> names) const;
+  [[nodiscard]] OptionalColumn find(std::string_view name) const;
+  [[nodiscard]] OptionalColumn find_any(std::initializer_list<std::string_view> names) const;
   [[nodiscard]] bool has_all(std::initializer_list<std::string_view> names) const;
   // Throws Error(input) naming both columns where another column has exactly the name of `column`.
   void check_unique(std::size_t column) const;
@@ -56,8 +64,29 @@ DelimitedTable open_table(const GazeFile& file);
 DelimitedTable open_headerless(std::string_view text, char separator, const std::vector<std::string>& names);
 
 // A column that the user names: by its whole text, by its name without the unit, or by its number from 1. Error(input).
-std::size_t declared_column(const DelimitedTable& table, const std::string& name, const std::string& place);
+std::size_t declared_column(const DelimitedTable& table, const std::string& name);
 std::string column_listing(const DelimitedTable& table);
+
+// The columns that a reader takes from a table, and how many cells a row must have to hold them.
+class UsedColumns {
+ public:
+  explicit UsedColumns(const DelimitedTable& table) : table_(table) {}
+
+  OptionalColumn use(OptionalColumn column) {
+    needed_ = std::max(needed_, column ? *column + 1 : 0);
+    return column;
+  }
+  OptionalColumn find(std::string_view name) { return use(table_.find(name)); }
+  // Throws Error(input) where there is none; without a `remedy` it lists the columns that there are.
+  std::size_t require(std::string_view name, std::string_view remedy = {});
+  // The column of the stamps: the one that the user named or, without one, the format's own.
+  std::size_t time(const GazeReadOptions& options, std::size_t own);
+  [[nodiscard]] std::size_t needed() const { return needed_; }
+
+ private:
+  const DelimitedTable& table_;
+  std::size_t needed_ = 0;
+};
 
 // From written stamps to nanoseconds: (stamp - subtract) * 10^exponent, in integers.
 struct TimeScale {
@@ -82,10 +111,11 @@ class TableRows {
   void check_length() const;
   // Trimmed, without quotes; empty where the row is too short. Valid until the next call.
   std::string_view cell(std::size_t column);
-  std::string_view cell(const std::optional<std::size_t>& column) { return column ? cell(*column) : ""; }
+  std::string_view cell(const OptionalColumn& column) { return column ? cell(*column) : ""; }
   // NaN where the value is missing. Throws Error(input) for text that is not a number.
   double number(std::size_t column);
-  double number(const std::optional<std::size_t>& column) { return column ? number(*column) : kNan; }
+  double number(const OptionalColumn& column) { return column ? number(*column) : kNan; }
+  Vec3d vector(const VectorColumns& columns) { return {number(columns[0]), number(columns[1]), number(columns[2])}; }
   std::int64_t time_ns(std::size_t column, const TimeScale& scale);
   [[noreturn]] void fail(const std::string& problem, std::string_view remedy) const;
 

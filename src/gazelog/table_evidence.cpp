@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gazelog/table_evidence.hpp"
+#include "gazelog/columns.hpp"
 
 #include <fmt/format.h>
 
@@ -99,8 +99,8 @@ void find_sum_of_eyes(const GazeFile& file, const DelimitedTable& table, const C
                                           y + table.headings[*left].text.substr(name.size()));
   const std::string problem = fmt::format("'{}' is the sum of '{}' and '{}', not their mean, in {} of {} rows", name,
                                           table.headings[*left].text, table.headings[*right].text, sums, count);
-  raw.faults.push_back({"sum-of-eyes", place_of(file, table.header_line), problem,
-                        "take the columns of one eye: " + setting, setting, problem});
+  raw.faults.push_back(
+      {"sum-of-eyes", table.place, problem, "take the columns of one eye: " + setting, setting, problem});
 }
 
 void find_other_things(const DelimitedTable& table, const ColumnPlan& plan, RawGaze& raw) {
@@ -187,7 +187,7 @@ OtherSensors::OtherSensors(const GazeFile& file, const DelimitedTable& table, co
   }
   name_ = table.headings[*column_].text;
   std::vector<std::string> with_gaze;
-  TableRows rows(file, table, std::max(plan.needed_cells(), *column_ + 1));
+  TableRows rows(file, table, std::max(plan.needed_cells(table), *column_ + 1));
   while (rows.next()) {
     const bool has_gaze = std::any_of(plan.sources.begin(), plan.sources.end(), [&](const GazeSource& source) {
       return !is_missing(rows.cell(source.x)) || !is_missing(rows.cell(source.y));

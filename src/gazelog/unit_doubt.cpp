@@ -7,11 +7,10 @@
 #include <cmath>
 #include <string>
 #include <string_view>
-#include <vector>
 
+#include "core/enum_name.hpp"
 #include "gazelog/judge.hpp"
 #include "gazelog/row_samples.hpp"
-#include "gazelog/units.hpp"
 
 namespace gazetrace {
 namespace {
@@ -36,18 +35,13 @@ struct Positions {
 // Tests degrees, and lengths on a display whose size is known.
 std::optional<BetterUnit> doubt_angles_and_lengths(const Positions& p, PositionUnit stated, PositionOrigin origin,
                                                    const DisplayGeometry& display) {
-  // No structured binding: not every compiler lets a lambda take one.
-  const Extent& x = p.x;
-  const Extent& y = p.y;
-  const double most = p.most;
-  const double spread = p.spread;
   const Vec2d size_cm{display.width_cm, display.height_cm};
   const Vec2d size_mm{10 * size_cm.x, 10 * size_cm.y};
   const Vec2d size_px{static_cast<double>(display.width_px), static_cast<double>(display.height_px)};
   const bool is_deg = stated == PositionUnit::deg;
   const bool is_length = stated == PositionUnit::mm || stated == PositionUnit::cm;
   const bool from_center = origin == PositionOrigin::center;
-  if (is_length && !from_center && most < 1.5 && spread > 0.02) {
+  if (is_length && !from_center && p.most < 1.5 && p.spread > 0.02) {
     return BetterUnit{"fractions of the display", PositionUnit::fraction, "`unit` fraction"};
   }
   const Vec2d size = stated == PositionUnit::mm ? size_mm : size_cm;
@@ -59,18 +53,18 @@ std::optional<BetterUnit> doubt_angles_and_lengths(const Positions& p, PositionU
   // because the extremes may be marks of missing values.
   const auto turns_too_far = [](const Extent& e) { return std::abs(e.median) > 60 || (e.low < -90 && e.high > 90); };
   const bool is_wrong =
-      is_deg ? turns_too_far(x) || turns_too_far(y)
-             : is_length && is_known(size) && (far(x, reach.x, from_center) || far(y, reach.y, from_center));
+      is_deg ? turns_too_far(p.x) || turns_too_far(p.y)
+             : is_length && is_known(size) && (far(p.x, reach.x, from_center) || far(p.y, reach.y, from_center));
   if (!is_wrong) {
     return std::nullopt;
   }
 
-  const bool centered = std::min(x.low, y.low) < -0.1 * most;
+  const bool centered = std::min(p.x.low, p.y.low) < -0.1 * p.most;
   const auto fits = [&](const Vec2d& wanted) {
     const double low = centered ? -0.6 : -0.1;
     const double high = centered ? 0.6 : 1.1;
-    return is_known(wanted) && x.low >= low * wanted.x && x.high <= high * wanted.x && y.low >= low * wanted.y &&
-           y.high <= high * wanted.y;
+    return is_known(wanted) && p.x.low >= low * wanted.x && p.x.high <= high * wanted.x && p.y.low >= low * wanted.y &&
+           p.y.high <= high * wanted.y;
   };
   const PositionOrigin better_origin = centered ? PositionOrigin::center : PositionOrigin::top_left;
   const std::string_view counts_from = centered == from_center ? ""
@@ -110,20 +104,9 @@ bool count_from_center(const Positions& p, const Vec2d& size) {
 }
 
 std::string_view plural_of(PositionUnit unit) {
-  switch (unit) {
-    case PositionUnit::fraction:
-      return "fractions of the display";
-    case PositionUnit::px:
-      return "pixels";
-    case PositionUnit::mm:
-      return "millimetres";
-    case PositionUnit::cm:
-      return "centimetres";
-    case PositionUnit::deg:
-      return "degrees";
-    default:
-      return "such numbers";
-  }
+  const std::string_view name =
+      name_of(unit, {"", "fractions of the display", "pixels", "millimetres", "centimetres", "degrees"});
+  return name.empty() ? "such numbers" : name;
 }
 
 // How much of the log lies on the display, or can be used, when it is interpreted under other conventions.

@@ -4,9 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/enum_name.hpp"
@@ -16,43 +13,24 @@
 namespace gazetrace {
 
 std::optional<PositionUnit> position_unit_from(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, PositionUnit>, 24> kSpellings{{
-      {"1", PositionUnit::fraction},
-      {"norm", PositionUnit::fraction},
-      {"normalized", PositionUnit::fraction},
-      {"normalised", PositionUnit::fraction},
-      {"fraction", PositionUnit::fraction},
-      {"px", PositionUnit::px},
-      {"pix", PositionUnit::px},
-      {"pixel", PositionUnit::px},
-      {"pixels", PositionUnit::px},
-      {"mm", PositionUnit::mm},
-      {"cm", PositionUnit::cm},
-      {"deg", PositionUnit::deg},
-      {"degree", PositionUnit::deg},
-      {"degrees", PositionUnit::deg},
-      {"dva", PositionUnit::deg},
-      {"degree of visual angle", PositionUnit::deg},
-      {"degrees of visual angle", PositionUnit::deg},
-      {"\xC2\xB0", PositionUnit::deg},
-      {"rad", PositionUnit::rad},
-      {"rads", PositionUnit::rad},
-      {"radian", PositionUnit::rad},
-      {"radians", PositionUnit::rad},
-      {"unit", PositionUnit::unit_vector},
-      {"unit vector", PositionUnit::unit_vector},
-  }};
+  // Tobii: ADCSpx and DACS px are pixels of the display, ADCSmm millimetres on it.
+  static const std::vector<std::pair<PositionUnit, std::vector<std::string_view>>> kSpellings{
+      {PositionUnit::fraction, {"1", "norm", "normalized", "normalised", "fraction"}},
+      {PositionUnit::px, {"px", "pix", "pixel", "pixels", "adcspx", "dacspx", "dacs px"}},
+      {PositionUnit::mm, {"mm", "adcsmm"}},
+      {PositionUnit::cm, {"cm"}},
+      {PositionUnit::deg,
+       {"deg", "degree", "degrees", "dva", "degree of visual angle", "degrees of visual angle", "\xC2\xB0"}},
+      {PositionUnit::rad, {"rad", "rads", "radian", "radians"}},
+      {PositionUnit::unit_vector, {"unit", "unit vector"}},
+  };
   const std::string lower = to_lower(trim(text));
-  for (const auto& [spelling, unit] : kSpellings) {
-    if (lower == spelling) {
+  for (const auto& [unit, spellings] : kSpellings) {
+    if (std::find(spellings.begin(), spellings.end(), lower) != spellings.end()) {
       return unit;
     }
   }
-  // Tobii: ADCSpx and DACS px are pixels of the display, ADCSmm millimetres on it.
-  if (lower == "adcspx" || lower == "dacspx" || lower == "dacs px") {
-    return PositionUnit::px;
-  }
-  return lower == "adcsmm" ? std::optional(PositionUnit::mm) : std::nullopt;
+  return std::nullopt;
 }
 
 std::string_view to_string(PositionUnit unit) {
@@ -67,37 +45,21 @@ std::string_view to_string(GazeAxes axes) {
   return name_of(axes, {"auto", "gl", "unity", "sranipal", "cv", "unreal"});
 }
 
+std::string_view to_string(TimeUnit unit) {
+  return name_of(unit, {"auto", "ns", "us", "ms", "s"});
+}
+
 std::optional<int> time_exponent_of(TimeUnit unit) {
-  switch (unit) {
-    case TimeUnit::automatic:
-      return std::nullopt;
-    case TimeUnit::ns:
-      return 0;
-    case TimeUnit::us:
-      return 3;
-    case TimeUnit::ms:
-      return 6;
-    case TimeUnit::s:
-      return 9;
-  }
-  return std::nullopt;
+  return time_exponent(to_string(unit));
 }
 
 std::string time_unit_text(int exponent) {
-  switch (exponent) {
-    case 0:
-      return "ns";
-    case 2:
-      return "100 ns";
-    case 3:
-      return "us";
-    case 6:
-      return "ms";
-    case 9:
-      return "s";
-    default:
-      return fmt::format("10^{} ns", exponent);
+  for (const TimeUnit unit : {TimeUnit::ns, TimeUnit::us, TimeUnit::ms, TimeUnit::s}) {
+    if (time_exponent_of(unit) == exponent) {
+      return std::string(to_string(unit));
+    }
   }
+  return exponent == 2 ? "100 ns" : fmt::format("10^{} ns", exponent);
 }
 
 std::optional<int> guess_time_exponent(const std::vector<double>& raw_times) {

@@ -3,7 +3,6 @@
 // statistics.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +13,7 @@
 namespace gazetrace {
 
 std::optional<PositionUnit> position_unit_from(std::string_view text);  // "px", "1", "norm", "ADCSpx", "deg", ...
+std::string_view to_string(TimeUnit unit);
 std::optional<int> time_exponent_of(TimeUnit unit);
 std::string time_unit_text(int exponent);
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gazelog/validity.hpp"
+#include "gazelog/columns.hpp"
 
 #include <algorithm>
 
 #include "core/text.hpp"
-#include "gazelog/table.hpp"
 
 namespace gazetrace {
 

@@ -220,24 +220,21 @@ void write_gaze_csv(const GazeLog& log, const std::string& path) {
   const bool has_own_rows = !chosen_eye(log).is_alone;
   for (std::size_t i = 0; i < log.samples.size(); ++i) {
     GazeSample sample = log.samples[i];
-    const EyeOrigins* const origins = log.origins.empty() ? nullptr : &log.origins[i];
+    const auto origin_of = [&](Eye eye) {
+      return log.origins.empty() ? nullptr : eye == Eye::right ? &log.origins[i].right_mm : &log.origins[i].left_mm;
+    };
     const HeadPose* const pose = poses.of_sample[i];  // once for each time
     if (log.eyes.empty()) {
-      rows.write(sample,
-                 origins == nullptr         ? nullptr
-                 : sample.eye == Eye::right ? &origins->right_mm
-                                            : &origins->left_mm,
-                 pose, text);
+      rows.write(sample, origin_of(sample.eye), pose, text);
       continue;
     }
     if (has_own_rows) {
       sample.eye = Eye::cyclopean;
       rows.write(sample, nullptr, pose, text);
     }
-    rows.write(eye_row(sample, log.eyes[i].left, Eye::left, log.kind), origins == nullptr ? nullptr : &origins->left_mm,
+    rows.write(eye_row(sample, log.eyes[i].left, Eye::left, log.kind), origin_of(Eye::left),
                has_own_rows ? nullptr : pose, text);
-    rows.write(eye_row(sample, log.eyes[i].right, Eye::right, log.kind),
-               origins == nullptr ? nullptr : &origins->right_mm, nullptr, text);
+    rows.write(eye_row(sample, log.eyes[i].right, Eye::right, log.kind), origin_of(Eye::right), nullptr, text);
   }
   write_bytes_atomically(path, std::as_bytes(std::span(text)));
 }

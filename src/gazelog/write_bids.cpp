@@ -9,14 +9,16 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <span>
 
 #include "core/atomic_file.hpp"
+#include "core/text.hpp"
 #include "gazelog/bids_parts.hpp"
 #include "gazelog/bids_sidecars.hpp"
-#include "gazelog/gzip.hpp"
+#include "gazelog/log_file.hpp"
 #include "gazetrace/gaze_read.hpp"
 #include "gazetrace/gaze_write.hpp"
 
@@ -25,19 +27,13 @@ namespace {
 
 using Json = BidsJson;
 
-std::string task_of(const BidsName& name) {
-  for (const std::string& entity : name.entities) {
-    if (entity.starts_with("task-")) {
-      return entity.substr(5);
-    }
-  }
-  return "";
-}
-
 // What the standard recommends for every sidecar of a task.
 Json with_task(Json json, const BidsName& name) {
-  if (const std::string task = task_of(name); !task.empty()) {
-    json["TaskName"] = task;
+  for (const std::string& entity : name.entities) {
+    if (entity.starts_with("task-") && entity.size() > 5) {
+      json["TaskName"] = entity.substr(5);
+      break;
+    }
   }
   return json;
 }
@@ -123,6 +119,15 @@ class FolderLock {
   int descriptor_;
 };
 
+// Decided by the recording's own sidecar, not by one that it inherits.
+bool is_own(const std::string& path) {
+  const BidsName name = parse_bids_name(path);
+  const std::string sidecar = path.substr(0, path.size() - name.extension.size()) + ".json";
+  std::error_code code;
+  return std::filesystem::exists(sidecar, code) &&
+         JsonLeaves(read_text_file(sidecar), sidecar).text(kBidsWriterKey) == kBidsWriter;
+}
+
 }  // namespace
 
 bool is_bids_file_name(const std::string& path) {
@@ -147,6 +152,43 @@ void write_gaze_bids(const GazeLog& log, const std::string& path, const BidsLook
       throw Error(ErrorKind::runtime, leftover, "cannot be removed", "remove it: it would be read with the rest");
     }
   }
+}
+
+std::vector<BidsLeftover> bids_leftovers(const std::vector<std::string>& written) {
+  std::vector<BidsLeftover> leftovers;
+  if (written.empty()) {
+    return leftovers;
+  }
+  const std::vector<std::string> present = files_of_bids_name(parse_bids_name(written.front()));
+  std::vector<std::vector<std::string>> gaze;  // entities of the recordings that are read or will be
+  for (const std::vector<std::string>* const paths : {&written, &present}) {
+    for (const std::string& path : *paths) {
+      const BidsName name = parse_bids_name(path);
+      if (name.suffix == "physio" && name.is_table() &&
+          (paths == &written || recorded_signal(Sidecars(name, name.suffix)) != BidsSignal::other)) {
+        gaze.push_back(name.entities);
+      }
+    }
+  }
+  const auto is_written = [&](const std::string& path) {
+    const auto name = std::filesystem::path(path).filename();
+    return std::any_of(written.begin(), written.end(),
+                       [&](const std::string& w) { return std::filesystem::path(w).filename() == name; });
+  };
+  for (const std::string& path : present) {
+    const BidsName name = parse_bids_name(path);
+    const bool is_of_gaze = (name.suffix == "physio" || name.suffix == "physioevents") &&
+                            std::find(gaze.begin(), gaze.end(), name.entities) != gaze.end();
+    const bool is_screen = name.suffix == "events" && name.extension == ".json";
+    const bool is_data = name.is_table() || name.extension == ".json";
+    if (is_data && (is_of_gaze || is_screen) && !is_written(path)) {
+      const bool own = is_own(path);
+      if (own || is_of_gaze) {
+        leftovers.push_back({path, own});
+      }
+    }
+  }
+  return leftovers;
 }
 
 }  // namespace gazetrace

@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
-#include <optional>
+#include <utility>
 
 namespace gazetrace {
 namespace {
@@ -23,35 +21,25 @@ class Bytes {
 
   template <class Value>
   bool take(Value& value) {
-    std::array<unsigned char, sizeof(Value)> raw{};
-    if (rest_.size() < raw.size()) {
+    if (rest_.size() < sizeof(Value)) {
       return false;
     }
-    std::memcpy(raw.data(), rest_.data(), raw.size());
-    if constexpr (std::endian::native == std::endian::big) {
-      std::reverse(raw.begin(), raw.end());
-    }
-    value = std::bit_cast<Value>(raw);
-    rest_.remove_prefix(raw.size());
+    value = little_endian<Value>(rest_.data());
+    rest_.remove_prefix(sizeof(Value));
     return true;
   }
   // A byte with the value 1, 4 or 8, followed by a number of that many bytes.
   bool take_length(std::uint64_t& length) {
     std::uint8_t size = 0;
-    if (!take(size)) {
+    std::string_view digits;
+    if (!take(size) || (size != 1 && size != 4 && size != 8) || !take_text(size, digits)) {
       return false;
     }
-    std::uint8_t one = 0;
-    std::uint32_t four = 0;
-    if (size == 1 && take(one)) {
-      length = one;
-      return true;
+    length = 0;
+    for (std::size_t i = size; i-- > 0;) {
+      length = length << 8U | static_cast<unsigned char>(digits[i]);
     }
-    if (size == 4 && take(four)) {
-      length = four;
-      return true;
-    }
-    return size == 8 && take(length);
+    return true;
   }
   bool take_text(std::uint64_t length, std::string_view& text) {
     if (length > rest_.size()) {
@@ -76,22 +64,19 @@ bool take_as_double(Bytes& bytes, double& number) {
 }
 
 bool take_value(Bytes& bytes, const std::string& format, double& value) {
-  if (format == "float32") {
-    return take_as_double<float>(bytes, value);
+  using Take = bool (*)(Bytes&, double&);
+  static constexpr std::array<std::pair<std::string_view, Take>, 6> kFormats{{{"float32", take_as_double<float>},
+                                                                              {"double64", take_as_double<double>},
+                                                                              {"int8", take_as_double<std::int8_t>},
+                                                                              {"int16", take_as_double<std::int16_t>},
+                                                                              {"int32", take_as_double<std::int32_t>},
+                                                                              {"int64", take_as_double<std::int64_t>}}};
+  for (const auto& [name, take] : kFormats) {
+    if (format == name) {
+      return take(bytes, value);
+    }
   }
-  if (format == "double64") {
-    return take_as_double<double>(bytes, value);
-  }
-  if (format == "int8") {
-    return take_as_double<std::int8_t>(bytes, value);
-  }
-  if (format == "int16") {
-    return take_as_double<std::int16_t>(bytes, value);
-  }
-  if (format == "int32") {
-    return take_as_double<std::int32_t>(bytes, value);
-  }
-  return format == "int64" && take_as_double<std::int64_t>(bytes, value);
+  return false;
 }
 
 bool read_samples(Bytes& bytes, XdfStream& stream) {

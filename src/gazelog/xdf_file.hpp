@@ -3,7 +3,11 @@
 // Specifications.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +15,17 @@
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
+
+// A value out of the bytes of a binary recording, of which there must be enough.
+template <class Value>
+Value little_endian(const char* at) {
+  std::array<unsigned char, sizeof(Value)> bytes{};
+  std::memcpy(bytes.data(), at, sizeof(Value));
+  if constexpr (std::endian::native == std::endian::big) {
+    std::reverse(bytes.begin(), bytes.end());
+  }
+  return std::bit_cast<Value>(bytes);
+}
 
 struct XdfClockOffset {
   double time_s = 0, offset_s = 0;

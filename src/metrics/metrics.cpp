@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "core/named.hpp"
 #include "core/parallel.hpp"
 #include "gazetrace/error.hpp"
 #include "metrics/metric.hpp"
@@ -54,14 +55,7 @@ const std::vector<MetricInfo>& metrics() {
 }
 
 const MetricInfo& metric_by_name(const std::string& name) {
-  std::vector<std::string> names;
-  for (const MetricInfo& info : metrics()) {
-    if (info.name == name) {
-      return info;
-    }
-    names.push_back(info.name);
-  }
-  throw Error(ErrorKind::usage, "metric", unknown_name_message("metric", name, names));
+  return find_named(metrics(), name, "metric", "metric");
 }
 
 MetricMap measure(const std::string& metric, const MetricPicture& reference, const MetricPicture& test,

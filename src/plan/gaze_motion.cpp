@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/statistics.hpp"
-#include "gaze/unseen.hpp"
+#include "gaze/angles.hpp"
 
 namespace gazetrace {
 namespace {

@@ -96,8 +96,6 @@ class Check {
 
   std::vector<EventDoubt> run() {
     noise();
-    noise_beside_microsaccades();
-    noise_beside_pursuit();
     fixations();
     saccades();
     return std::move(doubts_);
@@ -106,59 +104,48 @@ class Check {
  private:
   void doubt(std::string code, std::string what) { doubts_.push_back({std::move(code), std::move(what)}); }
 
+  void doubt_noise(const EventNoise& noise, const std::string& what) {
+    doubt("noise", fmt::format("noise of {:.2g} deg RMS from sample to sample {}", noise.rms_s2s_deg, what));
+  }
+
   void noise() {
     const EventSettings& s = events_.settings;
     const EventNoise noise = measure_event_noise(log_, s);
     if (s.method == "ivt" && noise.median_speed_deg_s > kNoisyShare * s.velocity_deg_s) {
-      doubt("noise",
-            fmt::format("noise of {:.2g} deg RMS from sample to sample stands for {:.0f} deg/s in the median over the "
-                        "method's window of {:g} ms, and saccades begin at {:g} deg/s",
-                        noise.rms_s2s_deg, noise.median_speed_deg_s, static_cast<double>(s.velocity_window_ns) * 1e-6,
-                        s.velocity_deg_s));
+      doubt_noise(
+          noise,
+          fmt::format("stands for {:.0f} deg/s in the median over the method's window of {:g} ms, and saccades "
+                      "begin at {:g} deg/s",
+                      noise.median_speed_deg_s, static_cast<double>(s.velocity_window_ns) * 1e-6, s.velocity_deg_s));
     }
     if (s.method == "idt" && noise.median_extent_deg > kNoisyShare * s.dispersion_deg) {
-      doubt("noise",
-            fmt::format("noise of {:.2g} deg RMS from sample to sample spreads {:g} ms of gaze over {:.2g} deg in the "
-                        "median, and a fixation may spread over {:g} deg",
-                        noise.rms_s2s_deg, static_cast<double>(s.min_fixation_ns) * 1e-6, noise.median_extent_deg,
-                        s.dispersion_deg));
+      doubt_noise(
+          noise, fmt::format("spreads {:g} ms of gaze over {:.2g} deg in the median, and a fixation may spread "
+                             "over {:g} deg",
+                             static_cast<double>(s.min_fixation_ns) * 1e-6, noise.median_extent_deg, s.dispersion_deg));
     }
     // The adaptive method finds no saccade that is slower than the threshold to which the noise raised it. Its filter
-    // lowers the peaks of small saccades besides, so that those of 2 deg are lost before a threshold of 89 deg/s.
+    // lowers the peaks of small saccades besides, so that those of 2 deg are lost before a threshold of 89 deg/s. Of
+    // the method for microsaccades the threshold is a multiple of the noise.
     constexpr double kSmallSaccadeDeg = 1.5;
-    if (s.method == "adaptive" && events_.peak_threshold_deg_s > published_peak_deg_s(kSmallSaccadeDeg)) {
-      doubt("noise", fmt::format("noise of {:.2g} deg RMS from sample to sample raised the threshold to {:.0f} deg/s, "
-                                 "at which saccades below {:.1f} deg are not found",
-                                 noise.rms_s2s_deg, events_.peak_threshold_deg_s,
-                                 published_amplitude_deg(events_.peak_threshold_deg_s)));
+    const bool is_micro = s.method == "ek";
+    const double least_deg = is_micro ? s.max_microsaccade_deg : kSmallSaccadeDeg;
+    if ((is_micro || s.method == "adaptive") && events_.peak_threshold_deg_s > published_peak_deg_s(least_deg)) {
+      doubt_noise(noise,
+                  fmt::format("raised the threshold to {:.0f} deg/s, at which saccades below {:.1f} deg are not "
+                              "found{}",
+                              events_.peak_threshold_deg_s, published_amplitude_deg(events_.peak_threshold_deg_s),
+                              is_micro ? fmt::format(", and microsaccades are below {:g} deg", least_deg) : ""));
     }
-  }
-
-  // So does the method for microsaccades, whose threshold is a multiple of the noise.
-  void noise_beside_microsaccades() {
-    const EventSettings& s = events_.settings;
-    if (s.method == "ek" && events_.peak_threshold_deg_s > published_peak_deg_s(s.max_microsaccade_deg)) {
-      doubt("noise",
-            fmt::format("noise of {:.2g} deg RMS from sample to sample raised the threshold to {:.0f} deg/s, "
-                        "at which saccades below {:.1f} deg are not found, and microsaccades are below {:g} deg",
-                        measure_event_noise(log_, s).rms_s2s_deg, events_.peak_threshold_deg_s,
-                        published_amplitude_deg(events_.peak_threshold_deg_s), s.max_microsaccade_deg));
-    }
-  }
-
-  // Noise that leaves the dispersion makes pursuit of fixation. The gaze's own extent would not tell, as pursuit moves.
-  void noise_beside_pursuit() {
-    const EventSettings& s = events_.settings;
-    if (s.method != "ivdt" || step_ns_ <= 0) {
-      return;
-    }
-    const double rms_s2s_deg = measure_event_noise(log_, s).rms_s2s_deg;
+    // Noise that leaves the dispersion makes pursuit of fixation. The gaze's own extent would not tell, as pursuit
+    // moves.
     const double samples = static_cast<double>(s.dispersion_window_ns) / static_cast<double>(step_ns_) + 1;
-    if (const double extent_deg = noise_extent_deg(rms_s2s_deg, samples); extent_deg > kNoisyShare * s.dispersion_deg) {
-      doubt("noise",
-            fmt::format("noise of {:.2g} deg RMS from sample to sample would alone spread {:g} ms of gaze over "
-                        "{:.2g} deg, and what spreads over {:g} deg is pursuit",
-                        rms_s2s_deg, static_cast<double>(s.dispersion_window_ns) * 1e-6, extent_deg, s.dispersion_deg));
+    const double extent_deg = s.method == "ivdt" && step_ns_ > 0 ? noise_extent_deg(noise.rms_s2s_deg, samples) : 0;
+    if (extent_deg > kNoisyShare * s.dispersion_deg) {
+      doubt_noise(noise,
+                  fmt::format("would alone spread {:g} ms of gaze over {:.2g} deg, and what spreads over {:g} deg "
+                              "is pursuit",
+                              static_cast<double>(s.dispersion_window_ns) * 1e-6, extent_deg, s.dispersion_deg));
     }
   }
 

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is the same for every method: which samples are lost or in a blink, and which constants are allowed.
+// What is the same for every method: which samples are lost or in a blink, which constants are allowed, and presets.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/enum_name.hpp"
+#include "core/named.hpp"
 #include "gaze/angles.hpp"
-#include "gaze/events/absence.hpp"
 #include "gaze/events/event_method.hpp"
+#include "gazelog/eyes.hpp"
 
 namespace gazetrace {
 
@@ -25,17 +27,6 @@ const std::vector<EventMethod>& methods() {
 #undef EVENT_METHOD
   };
   return kMethods;
-}
-
-const EventMethod& method_by_name(const std::string& name) {
-  std::vector<std::string> known;
-  for (const EventMethod& method : methods()) {
-    if (method.name == name) {
-      return method;
-    }
-    known.push_back(method.name);
-  }
-  throw Error(ErrorKind::usage, "", unknown_name_message("event algorithm", name, known));
 }
 
 void check_settings(const EventSettings& s) {
@@ -66,21 +57,67 @@ std::vector<LabelRun> label_runs(const std::vector<EyeMovement>& labels, const s
   return runs;
 }
 
-void drop_short_fixations(const GazeDirections& gaze, EyeEvents& events) {
+void label_samples(std::vector<EyeMovement>& labels, std::size_t first, std::size_t end, EyeMovement movement) {
+  std::fill(labels.begin() + static_cast<std::ptrdiff_t>(first), labels.begin() + static_cast<std::ptrdiff_t>(end),
+            movement);
+}
+
+void drop_short(EyeMovement movement, const GazeDirections& gaze, EyeEvents& events) {
   // Each sample stands for one step of the clock.
   const std::int64_t step_ns = median_step_ns(gaze.t_ns);
   for (const LabelRun& run : label_runs(events.labels, gaze.t_ns)) {
-    if (run.movement == EyeMovement::fixation &&
+    if (run.movement == movement &&
         gaze.t_ns[run.last] - gaze.t_ns[run.first] + step_ns < events.settings.min_fixation_ns) {
-      std::fill(events.labels.begin() + static_cast<std::ptrdiff_t>(run.first),
-                events.labels.begin() + static_cast<std::ptrdiff_t>(run.last) + 1, EyeMovement::unclassified);
+      label_samples(events.labels, run.first, run.last + 1, EyeMovement::unclassified);
     }
+  }
+}
+
+std::vector<EyeMovement> absence_labels(const GazeLog& log, const std::vector<std::int64_t>& t_ns) {
+  std::vector<EyeMovement> labels(log.samples.size(), EyeMovement::unclassified);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (!is_usable(log.samples[i].validity)) {
+      labels[i] = log.samples[i].validity == GazeValidity::blink ? EyeMovement::blink : EyeMovement::lost;
+    }
+  }
+  for (const GazeEvent& event : log.events) {
+    if (event.type != GazeEventType::blink) {
+      continue;
+    }
+    const auto begin = std::lower_bound(t_ns.begin(), t_ns.end(), event.begin_ns);
+    for (auto at = begin; at != t_ns.end() && *at <= event.end_ns; ++at) {
+      const auto i = static_cast<std::size_t>(at - t_ns.begin());
+      labels[i] = labels[i] == EyeMovement::lost ? EyeMovement::blink : labels[i];
+    }
+  }
+  return labels;
+}
+
+void infer_blinks(const std::vector<std::int64_t>& t_ns, std::int64_t min_ns, std::int64_t max_ns,
+                  std::vector<EyeMovement>& labels) {
+  const auto is_away = [&](std::size_t i) { return labels[i] == EyeMovement::lost || labels[i] == EyeMovement::blink; };
+  for (std::size_t i = 0; max_ns > 0 && i < labels.size(); ++i) {
+    if (!is_away(i)) {
+      continue;
+    }
+    std::size_t end = i;
+    bool named = false;
+    while (end < labels.size() && is_away(end)) {
+      named = named || labels[end] == EyeMovement::blink;
+      ++end;
+    }
+    const bool between = i > 0 && end < labels.size();
+    const std::int64_t away_ns = between ? t_ns[end] - t_ns[i - 1] : 0;
+    if (between && away_ns <= max_ns && (named || away_ns >= min_ns)) {
+      label_samples(labels, i, end, EyeMovement::blink);
+    }
+    i = end;
   }
 }
 
 EyeEvents detect_events(const GazeLog& log, const EventSettings& settings) {
   check_settings(settings);
-  const EventMethod& method = method_by_name(settings.method);
+  const EventMethod& method = find_named(methods(), settings.method, "event algorithm", "");
   const GazeDirections gaze = gaze_directions(log, settings.space);
   EyeEvents events;
   events.settings = settings;
@@ -115,6 +152,73 @@ EyeEvents detect_events(const GazeLog& log, const EventPreset& preset, std::opti
   EyeEvents events = detect_events(log, preset.settings);
   events.preset = preset.name;
   return events;
+}
+
+// The two eyes of a log, each by itself and held against each other.
+GazeLog one_eye(const GazeLog& log, Eye eye) {
+  if (log.eyes.size() != log.samples.size() || log.samples.empty()) {
+    throw Error(ErrorKind::input, log.source, "does not hold both eyes separately");
+  }
+  GazeLog alone = log;
+  alone.eyes.clear();
+  for (std::size_t i = 0; i < log.samples.size(); ++i) {
+    const EyeGaze& gaze = eye == Eye::left ? log.eyes[i].left : log.eyes[i].right;
+    GazeSample& sample = alone.samples[i];
+    sample.eye = eye;
+    take_eye(sample, gaze, log.kind);
+    if (is_usable(sample.validity) && (std::isnan(gaze.at.x) || std::isnan(gaze.at.y))) {
+      sample.validity = GazeValidity::lost;
+    }
+  }
+  return alone;
+}
+
+EyeEvents binocular_events(const GazeLog& log, const EventPreset& preset, std::optional<GazeDevice> device) {
+  const GazeLog left = one_eye(log, Eye::left);
+  EyeEvents events = detect_events(left, preset, device);
+  const EyeEvents other = detect_events(one_eye(log, Eye::right), preset, device);
+  const auto is_fast = [](EyeMovement m) { return m == EyeMovement::saccade || m == EyeMovement::microsaccade; };
+  for (const EyeEvent& event : events.events) {
+    const auto first = other.labels.begin() + static_cast<std::ptrdiff_t>(event.first);
+    const auto end = other.labels.begin() + static_cast<std::ptrdiff_t>(event.last) + 1;
+    if (is_fast(event.movement) && std::none_of(first, end, is_fast)) {
+      label_samples(events.labels, event.first, event.last + 1, EyeMovement::fixation);
+    }
+  }
+  events.events = measure_events(left, gaze_directions(left, events.settings.space), events);
+  return events;
+}
+
+const std::vector<EventPreset>& event_presets() {
+  static const std::vector<EventPreset> kPresets{
+#define EVENT_PRESET(name, device, description, ...) \
+  EventPreset{name, description, GazeDevice::device, EventSettings{__VA_ARGS__}},
+#include "gaze/events/presets.def"
+#undef EVENT_PRESET
+  };
+  return kPresets;
+}
+
+const EventPreset& event_preset(std::string_view name) {
+  return find_named(event_presets(), name, "event method", "");
+}
+
+const EventPreset& default_event_preset(const GazeLog& log, std::optional<GazeDevice> device) {
+  return event_preset(device.value_or(recorded_device(log)) == GazeDevice::desktop ? "ivt"
+                      : log.head.empty()                                           ? "ivt-attention"
+                                                                                   : "ivt-hmd");
+}
+
+GazeDevice recorded_device(const GazeLog& log) {
+  return log.device.value_or(log.kind == GazeKind::screen ? GazeDevice::desktop : GazeDevice::head_mounted);
+}
+
+std::string_view to_string(GazeSpace space) {
+  return space == GazeSpace::head ? "head" : "world";
+}
+
+std::string_view to_string(EyeMovement movement) {
+  return name_of(movement, {"fixation", "saccade", "pursuit", "blink", "lost", "unclassified", "microsaccade"});
 }
 
 }  // namespace gazetrace

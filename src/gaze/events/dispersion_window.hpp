@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gaze/angles.hpp"
+#include "gazetrace/gaze_events.hpp"
 #include "gazetrace/math.hpp"
 
 namespace gazetrace {
@@ -112,5 +113,40 @@ class DispersionWindow {
   TangentFrame frame_;
   std::array<SlidingMaximum, 4> extremes_;
 };
+
+// Slides the window over samples [first, end) of a stretch until the gaze stays within `most_deg` in `least_ns` of it,
+// lets it grow as long as it does, and calls still(begin, end) for each such place. Returns where the rest begins,
+// which is too short to fill the window; the window holds it.
+template <class Still>
+std::size_t find_still(const GazeDirections& gaze, std::size_t first, std::size_t end, std::int64_t least_ns,
+                       double most_deg, DispersionWindow& window, const Still& still) {
+  window.start(first);
+  std::size_t begin = first;
+  while (begin < end) {
+    const auto is_filled = [&] {
+      return window.end() > begin && gaze.t_ns[window.end() - 1] - gaze.t_ns[begin] >= least_ns;
+    };
+    while (window.end() < end && !is_filled()) {
+      window.push();
+    }
+    if (!is_filled()) {
+      break;
+    }
+    if (window.dispersion_deg() > most_deg) {
+      window.pop();
+      ++begin;
+      continue;
+    }
+    while (window.end() < end && window.dispersion_with_next_deg() <= most_deg) {
+      window.push();
+    }
+    still(begin, window.end());
+    begin = window.end();
+    if (begin < end) {
+      window.start(begin);
+    }
+  }
+  return begin;
+}
 
 }  // namespace gazetrace

@@ -87,51 +87,6 @@ Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-}  // namespace
-
-// What a tracker says, where it says so; else the time from begin to end.
-std::int64_t event_duration_ns(const EyeEvent& event, std::int64_t step_ns) {
-  return !event.stated               ? measured_duration_ns(event, step_ns)
-         : event.stated->duration_ns ? *event.stated->duration_ns
-                                     : event.stated->end_ns - event.stated->begin_ns;
-}
-
-std::int64_t event_step_ns(const GazeLog& log) {
-  return median_step_ns(times_of(log));
-}
-
-std::string events_as_tsv(const EyeEvents& events, const GazeLog& log) {
-  const bool are_stated = events.preset == kStatedByLog;
-  const std::vector<Column> columns = measures(events);
-  const std::int64_t step_ns = event_step_ns(log);
-  std::string text = "movement\tonset_ns\toffset_ns\tduration_ms\tfirst_row\tlast_row";
-  text += are_stated ? "\tamplitude_deg\tpeak_velocity_deg_s\tmeasured_duration_ms" : "";
-  for (const Column& column : columns) {
-    text += "\t" + column.name;
-  }
-  text += "\tdx\tdy\tdz\n";
-  for (const EyeEvent& event : events.events) {
-    fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}", to_string(event.movement), onset_ns(event),
-                   offset_ns(event), milliseconds(event_duration_ns(event, step_ns)), row_of(log, event.first),
-                   row_of(log, event.last));
-    if (are_stated) {
-      append_number(text, stated_amplitude_deg(event));
-      append_number(text, stated_peak_velocity_deg_s(event));
-      text += "\t" + milliseconds(measured_duration_ns(event, step_ns));
-    }
-    for (const Column& column : columns) {
-      append_number(text, event.*column.value);
-    }
-    append_number(text, event.direction.x);
-    append_number(text, event.direction.y);
-    append_number(text, event.direction.z);
-    text += '\n';
-  }
-  return text;
-}
-
-namespace {
-
 Json events_json(const EyeEvents& events, const GazeLog& log) {
   const EventSettings& s = events.settings;
   const bool are_stated = events.preset == kStatedByLog;
@@ -187,6 +142,47 @@ std::string text_of(const Json& json) {
 }
 
 }  // namespace
+
+// What a tracker says, where it says so; else the time from begin to end.
+std::int64_t event_duration_ns(const EyeEvent& event, std::int64_t step_ns) {
+  return !event.stated               ? measured_duration_ns(event, step_ns)
+         : event.stated->duration_ns ? *event.stated->duration_ns
+                                     : event.stated->end_ns - event.stated->begin_ns;
+}
+
+std::int64_t event_step_ns(const GazeLog& log) {
+  return median_step_ns(times_of(log));
+}
+
+std::string events_as_tsv(const EyeEvents& events, const GazeLog& log) {
+  const bool are_stated = events.preset == kStatedByLog;
+  const std::vector<Column> columns = measures(events);
+  const std::int64_t step_ns = event_step_ns(log);
+  std::string text = "movement\tonset_ns\toffset_ns\tduration_ms\tfirst_row\tlast_row";
+  text += are_stated ? "\tamplitude_deg\tpeak_velocity_deg_s\tmeasured_duration_ms" : "";
+  for (const Column& column : columns) {
+    text += "\t" + column.name;
+  }
+  text += "\tdx\tdy\tdz\n";
+  for (const EyeEvent& event : events.events) {
+    fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}", to_string(event.movement), onset_ns(event),
+                   offset_ns(event), milliseconds(event_duration_ns(event, step_ns)), row_of(log, event.first),
+                   row_of(log, event.last));
+    if (are_stated) {
+      append_number(text, stated_amplitude_deg(event));
+      append_number(text, stated_peak_velocity_deg_s(event));
+      text += "\t" + milliseconds(measured_duration_ns(event, step_ns));
+    }
+    for (const Column& column : columns) {
+      append_number(text, event.*column.value);
+    }
+    append_number(text, event.direction.x);
+    append_number(text, event.direction.y);
+    append_number(text, event.direction.z);
+    text += '\n';
+  }
+  return text;
+}
 
 std::string events_as_json(const EyeEvents& events, const GazeLog& log) {
   return text_of(events_json(events, log));

@@ -10,33 +10,28 @@
 
 #include "gaze/inspect/inspect.hpp"
 #include "gazelog/recordings.hpp"
-#include "gazelog/row_samples.hpp"
 #include "gazelog/stamps.hpp"
 
 namespace gazetrace {
 namespace {
+
+double percent_of(std::size_t n, std::size_t all) {
+  return 100 * static_cast<double>(n) / static_cast<double>(std::max<std::size_t>(1, all));
+}
 
 class Doctor {
  public:
   Doctor(const GazeLog& log, const GazeUnderInspection* whole, const GazeInspectOptions& options,
          GazeInspection& report)
       : log_(log), whole_(whole), options_(options), report_(report) {
-    for (const GazeSample& sample : log.samples) {
-      if (is_usable(sample.validity)) {
-        usable_.push_back(&sample);
-      }
-      if (usable_.size() > kMostLookedAt) {
-        break;
-      }
-    }
-    if (usable_.size() > kMostLookedAt) {
-      // Every n-th sample of the whole log, where it is usable.
-      usable_.clear();
-      const std::size_t stride = log.samples.size() / kMostLookedAt + 1;
-      for (std::size_t i = 0; i < log.samples.size(); i += stride) {
-        if (is_usable(log.samples[i].validity)) {
-          usable_.push_back(&log.samples[i]);
-        }
+    // Of a long log every n-th sample, where it is usable.
+    const auto usable = std::count_if(log.samples.begin(), log.samples.end(),
+                                      [](const GazeSample& sample) { return is_usable(sample.validity); });
+    const bool is_long = static_cast<std::size_t>(usable) > kMostLookedAt;
+    const std::size_t stride = is_long ? log.samples.size() / kMostLookedAt + 1 : 1;
+    for (std::size_t i = 0; i < log.samples.size(); i += stride) {
+      if (is_usable(log.samples[i].validity)) {
+        usable_.push_back(&log.samples[i]);
       }
     }
   }
@@ -85,11 +80,10 @@ class Doctor {
       usable += is_usable(sample.validity) ? 1 : 0;
       on_display += is_usable(sample.validity) && sample.validity != GazeValidity::off_screen ? 1 : 0;
     }
-    const auto share = [&](std::size_t n) {
-      return 100 * static_cast<double>(n) / static_cast<double>(std::max<std::size_t>(1, log.samples.size()));
-    };
-    return log.kind == GazeKind::screen ? fmt::format("{:.0f} % of the samples lie on the display", share(on_display))
-                                        : fmt::format("{:.0f} % of the samples are usable", share(usable));
+    const std::size_t all = log.samples.size();
+    return log.kind == GazeKind::screen
+               ? fmt::format("{:.0f} % of the samples lie on the display", percent_of(on_display, all))
+               : fmt::format("{:.0f} % of the samples are usable", percent_of(usable, all));
   }
 
   void faults_of_reading() {
@@ -200,12 +194,9 @@ class Doctor {
       beside_swapped += outside(y, x) ? 1 : 0;
     }
     if (beside * 10 > usable_.size() && beside_swapped * 4 < beside) {
-      const auto share = [&](std::size_t n) {
-        return 100 * static_cast<double>(n) / static_cast<double>(usable_.size());
-      };
       add(FindingKind::suspicion, "swapped-axes", "the axes seem to be exchanged",
           fmt::format("statistics: {:.0f} % of the samples lie beside the display, {:.0f} % with x and y exchanged",
-                      share(beside), share(beside_swapped)) +
+                      percent_of(beside, usable_.size()), percent_of(beside_swapped, usable_.size())) +
               read_otherwise([](Conventions& c) { c.swap_xy = !c.swap_xy; }),
           "`swap-xy`");
     }
@@ -234,12 +225,10 @@ class Doctor {
     if (!is_reversed) {
       lost_ends();
     }
-    if (is_reversed) {
-      // said already
-    } else if (loss.usable == 0) {
+    if (!is_reversed && loss.usable == 0) {
       add(FindingKind::suspicion, "nothing-usable", "no sample is usable",
           "check which column says what is valid: `validity-column`, `valid-values`");
-    } else if (share(loss.usable) < 0.5) {
+    } else if (!is_reversed && share(loss.usable) < 0.5) {
       add(FindingKind::note, "lost", fmt::format("only {:.1f} % of the samples are usable", 100 * share(loss.usable)),
           "the log's own validity");
     }
@@ -252,9 +241,7 @@ class Doctor {
           "positions outside 0..1 of the display: did the viewer look there, and is this the display of the "
           "recording?");
     }
-    const bool are_marks = std::any_of(report_.findings.begin(), report_.findings.end(), [](const GazeFinding& f) {
-      return f.code == "zero-missing" || f.code == "missing-value";
-    });
+    const bool are_marks = has_finding({"zero-missing", "missing-value"});
     // Marks stand still as well, and so do numbers of few digits; both are reported already.
     const bool tells = !are_marks && !is_reversed && !has_finding({"coarse"}) && !log_.sample_age_unknown;
     if (tells && report_.frozen.samples * 20 > loss.usable && report_.frozen.runs > 0) {

@@ -2,14 +2,12 @@
 #include "gaze/inspect/inspect.hpp"
 
 #include <algorithm>
-#include <cctype>
-#include <cmath>
 #include <limits>
 
 #include "core/enum_name.hpp"
 #include "gazelog/log_file.hpp"
 #include "gazelog/recordings.hpp"
-#include "gazelog/timing.hpp"
+#include "gazelog/stamps.hpp"
 
 namespace gazetrace {
 namespace {
@@ -28,29 +26,6 @@ void measure_ranges(const GazeLog& log, GazeInspection& report) {
     report.range_y = {std::min(report.range_y[0], y), std::max(report.range_y[1], y)};
   }
 }
-
-}  // namespace
-
-std::string_view to_string(AxisVerdict verdict) {
-  return name_of(verdict, {"confirmed", "flipped", "undecided"});
-}
-
-std::string_view to_string(FindingKind kind) {
-  return name_of(kind, {"fault", "suspicion", "note"});
-}
-
-void add_finding(GazeInspection& inspection, FindingKind kind, std::string code, std::string what, std::string evidence,
-                 std::string setting) {
-  inspection.findings.push_back({kind, std::move(code), std::move(what), std::move(evidence), std::move(setting)});
-}
-
-bool has_finding(const GazeInspection& inspection, std::initializer_list<std::string_view> codes) {
-  return std::any_of(inspection.findings.begin(), inspection.findings.end(), [&](const GazeFinding& finding) {
-    return std::find(codes.begin(), codes.end(), finding.code) != codes.end();
-  });
-}
-
-namespace {
 
 GazeInspection inspect(const GazeLog& log, const GazeUnderInspection* whole, const GazeInspectOptions& options) {
   GazeInspection report;
@@ -111,6 +86,25 @@ GazeInspection inspect(const GazeLog& log, const GazeUnderInspection* whole, con
 }
 
 }  // namespace
+
+std::string_view to_string(AxisVerdict verdict) {
+  return name_of(verdict, {"confirmed", "flipped", "undecided"});
+}
+
+std::string_view to_string(FindingKind kind) {
+  return name_of(kind, {"fault", "suspicion", "note"});
+}
+
+void add_finding(GazeInspection& inspection, FindingKind kind, std::string code, std::string what, std::string evidence,
+                 std::string setting) {
+  inspection.findings.push_back({kind, std::move(code), std::move(what), std::move(evidence), std::move(setting)});
+}
+
+bool has_finding(const GazeInspection& inspection, std::initializer_list<std::string_view> codes) {
+  return std::any_of(inspection.findings.begin(), inspection.findings.end(), [&](const GazeFinding& finding) {
+    return std::find(codes.begin(), codes.end(), finding.code) != codes.end();
+  });
+}
 
 GazeUnderInspection load_for_inspection(const std::string& path, GazeReadOptions read) {
   read.guess_display = true;

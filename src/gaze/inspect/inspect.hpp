@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gazelog/eyes.hpp"
 #include "gazelog/screen_angles.hpp"
 #include "gazetrace/gaze_inspect.hpp"
 #include "gazetrace/gaze_log.hpp"
@@ -25,12 +26,10 @@ class GazePlane {
   // The speed of 30 deg/s in this unit; a guess where angles are unknown.
   [[nodiscard]] double units_per_degree() const { return units_per_degree_; }
   [[nodiscard]] Vec2d at(const Vec3d& place) const;  // (u, v, 0) or a direction
-  [[nodiscard]] Vec2d of(const GazeSample& sample) const {
-    return at(is_direction_ ? sample.direction : Vec3d{sample.u, sample.v, 0});
-  }
+  [[nodiscard]] Vec2d of(const GazeSample& sample) const { return at(place_of(sample, kind_)); }
 
  private:
-  bool is_direction_ = false;
+  GazeKind kind_;
   ScreenAngles screen_;
   double x_scale_ = 1, y_scale_ = 1;
   double units_per_degree_ = 1;

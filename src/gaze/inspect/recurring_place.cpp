@@ -7,11 +7,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <tuple>
 #include <utility>
 
+#include "gazelog/eyes.hpp"
 #include "gazelog/row_samples.hpp"
 
 namespace gazetrace {
@@ -44,9 +44,6 @@ using Place = std::tuple<double, double, double>;
 Vec3d place_of(const RawRows& rows, std::size_t i, bool has_three) {
   const Vec3d at = rows.at(i);
   return has_three ? at : Vec3d{at.x, at.y, 0};
-}
-Vec3d place_of(const GazeSample& sample, GazeKind kind) {
-  return kind == GazeKind::direction ? sample.direction : Vec3d{sample.u, sample.v, 0};
 }
 Place key_of(const Vec3d& at) {
   return {at.x, at.y, at.z};

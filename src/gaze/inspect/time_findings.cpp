@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
@@ -29,24 +28,23 @@ void order(const GazeLog& log, GazeInspection& report) {
   const std::string seen = fmt::format("{} of {} rows go back in time, {} stand at a time that is there already",
                                        found.backward_steps, found.rows, found.duplicates);
   const std::string setting = loses_much(found) ? "" : "`order` sort";
+  const auto add = [&](const char* code, const std::string& what, const std::string& more = {}) {
+    add_finding(report, FindingKind::fault, code, what, seen + more, setting);
+  };
   if (found.backward_steps * 50 > found.rows) {
-    add_finding(report, FindingKind::fault, "unordered", "the rows are not in the order of time: " + problem, seen,
-                setting);
+    add("unordered", "the rows are not in the order of time: " + problem);
   } else if (repeats) {
-    add_finding(report, FindingKind::fault, "repeated-rows",
-                fmt::format("{} rows are repeated, the first in line {}", found.duplicates, found.first_duplicate_row),
-                fmt::format("{}; {} of these have the same position, too", seen, found.identical_duplicates), setting);
+    add("repeated-rows",
+        fmt::format("{} rows are repeated, the first in line {}", found.duplicates, found.first_duplicate_row),
+        fmt::format("; {} of these have the same position, too", found.identical_duplicates));
   } else if (found.duplicates > 0 && found.backward_steps == 0) {
-    add_finding(
-        report, FindingKind::fault, "duplicates",
+    add("duplicates",
         fmt::format("{} rows stand at the time of another row with another position: {}", found.duplicates, problem),
-        setting.empty() ? fmt::format("{}; dropping them would keep {} of {} rows: export again with finer stamps",
-                                      seen, found.rows - found.duplicates, found.rows)
-                        : seen,
-        setting);
+        setting.empty() ? fmt::format("; dropping them would keep {} of {} rows: export again with finer stamps",
+                                      found.rows - found.duplicates, found.rows)
+                        : "");
   } else {
-    add_finding(report, FindingKind::fault, "unordered", "some rows are not in the order of time: " + problem, seen,
-                setting);
+    add("unordered", "some rows are not in the order of time: " + problem);
   }
 }
 
@@ -92,15 +90,9 @@ void bursts(const GazeLog& log, GazeInspection& report) {
 
 // The unit of stamps whose exponent differs by `shift` powers of ten, as an option; empty where there is none.
 std::string time_unit_setting(const GazeLog& log, int shift) {
-  static constexpr std::array<std::pair<std::string_view, int>, 4> kUnits{{{"ns", 0}, {"us", 3}, {"ms", 6}, {"s", 9}}};
   const int now = log.conventions.time_exponent.value;
-  const bool is_named = std::any_of(kUnits.begin(), kUnits.end(), [&](const auto& u) { return u.second == now; });
-  for (const auto& [other, wanted] : kUnits) {
-    if (is_named && wanted == now + shift) {
-      return fmt::format("`time-unit` {}", other);
-    }
-  }
-  return {};
+  const auto is_named = [](int exponent) { return exponent >= 0 && exponent <= 9 && exponent % 3 == 0; };
+  return is_named(now) && is_named(now + shift) ? fmt::format("`time-unit` {}", time_unit_text(now + shift)) : "";
 }
 
 void time_unit(const GazeLog& log, bool can_be_said, GazeInspection& report) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/statistics.hpp"
+#include "gaze/angles.hpp"
 #include "gaze/inspect/inspect.hpp"
 
 namespace gazetrace {
@@ -26,22 +27,11 @@ struct Seen {
 std::vector<Seen> with_head(const GazeLog& log) {
   std::vector<Seen> seen;
   seen.reserve(log.samples.size());
-  std::size_t h = 0;
+  HeadWalker head(log.head);
   for (const GazeSample& sample : log.samples) {
-    if (!is_usable(sample.validity) || !is_finite(sample.direction)) {
-      continue;
-    }
-    while (h + 1 < log.head.size() && log.head[h + 1].t_ns <= sample.t_ns) {
-      ++h;
-    }
-    const HeadPose& before = log.head[h];
-    if (before.t_ns == sample.t_ns) {
-      seen.push_back({sample.t_ns, sample.direction, before.orientation});
-    } else if (before.t_ns < sample.t_ns && h + 1 < log.head.size()) {
-      const HeadPose& after = log.head[h + 1];
-      const double share =
-          static_cast<double>(sample.t_ns - before.t_ns) / static_cast<double>(after.t_ns - before.t_ns);
-      seen.push_back({sample.t_ns, sample.direction, slerp(before.orientation, after.orientation, share)});
+    const bool has_head = sample.t_ns >= log.head.front().t_ns && sample.t_ns <= log.head.back().t_ns;
+    if (has_head && is_usable(sample.validity) && is_finite(sample.direction)) {
+      seen.push_back({sample.t_ns, sample.direction, head.orientation(sample.t_ns)});
     }
   }
   return seen;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The list of steps, their form as text, and applying them one after another.
+// The list of steps, their form as text, applying them one after another, and helpers of several steps.
 #include "gaze/process/gaze_step.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/named.hpp"
 #include "core/text.hpp"
 
 namespace gazetrace {
@@ -27,29 +28,11 @@ const std::vector<GazeStepEntry>& entries() {
 }
 
 const GazeStepEntry& entry_by_name(std::string_view name) {
-  std::vector<std::string> known;
-  for (const GazeStepEntry& entry : entries()) {
-    if (entry.info.name == name) {
-      return entry;
-    }
-    known.push_back(entry.info.name);
-  }
-  throw Error(ErrorKind::usage, "", unknown_name_message("gaze step", name, known));
+  return find_named(entries(), name, "gaze step", "");
 }
 
 std::string_view unit_text(GazeStepUnit unit) {
-  switch (unit) {
-    case GazeStepUnit::degrees:
-      return "deg";
-    case GazeStepUnit::hertz:
-      return "hz";
-    case GazeStepUnit::duration:
-    case GazeStepUnit::count:
-    case GazeStepUnit::share:
-    case GazeStepUnit::number:
-      break;
-  }
-  return "";
+  return unit == GazeStepUnit::degrees ? "deg" : unit == GazeStepUnit::hertz ? "hz" : "";
 }
 
 [[noreturn]] void bad_value(std::string_view step, const GazeStepParameter& parameter, std::string_view text) {
@@ -101,11 +84,7 @@ const GazeStepParameter& parameter_of(const GazeStep& step, std::string_view nam
 }  // namespace
 
 std::vector<GazeStepInfo> gaze_steps() {
-  std::vector<GazeStepInfo> infos;
-  for (const GazeStepEntry& entry : entries()) {
-    infos.push_back(entry.info);
-  }
-  return infos;
+  return {entries().begin(), entries().end()};
 }
 
 double GazeStep::value(std::string_view parameter) const {
@@ -118,7 +97,7 @@ std::int64_t GazeStep::duration_ns(std::string_view parameter) const {
 
 GazeStep parse_gaze_step(std::string_view text) {
   const std::size_t colon = text.find(':');
-  const GazeStepInfo& info = entry_by_name(trim(text.substr(0, colon))).info;
+  const GazeStepInfo& info = entry_by_name(trim(text.substr(0, colon)));
   GazeStep step{info.name, info.parameters};
   std::string_view rest = colon == std::string_view::npos ? std::string_view() : text.substr(colon + 1);
   while (!rest.empty()) {
@@ -173,11 +152,54 @@ ProcessedGaze process_gaze(const GazeLog& log, const std::vector<GazeStep>& step
   for (const GazeStep& step : steps) {
     const GazeStepEntry& entry = entry_by_name(step.name);
     const std::string said = entry.apply(processed.log, step);
-    processed.reports.push_back(
-        fmt::format("{}{}: {}", to_string(step), entry.info.is_oracle ? " (oracle)" : "", said));
-    processed.has_oracle = processed.has_oracle || entry.info.is_oracle;
+    processed.reports.push_back(fmt::format("{}{}: {}", to_string(step), entry.is_oracle ? " (oracle)" : "", said));
+    processed.has_oracle = processed.has_oracle || entry.is_oracle;
   }
   return processed;
+}
+
+std::vector<FilterRun> filter_runs(const GazeLog& log) {
+  const std::int64_t most_ns = 3 * median_step_ns(times_of(log));
+  const std::vector<GazeSample>& samples = log.samples;
+  const auto is_good = [&](const GazeSample& s) { return is_usable(s.validity) && is_finite(place_of(s, log.kind)); };
+  std::vector<FilterRun> runs;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!is_good(samples[i])) {
+      continue;
+    }
+    const std::size_t first = i;
+    while (i + 1 < samples.size() && is_good(samples[i + 1]) && samples[i + 1].t_ns - samples[i].t_ns <= most_ns) {
+      ++i;
+    }
+    runs.push_back({first, i + 1});
+  }
+  return runs;
+}
+
+void set_place(GazeSample& sample, GazeKind kind, const Vec3d& place) {
+  if (kind == GazeKind::direction) {
+    sample.direction = normalize(place);
+    return;
+  }
+  sample.u = place.x;
+  sample.v = place.y;
+  if (sample.validity == GazeValidity::ok || sample.validity == GazeValidity::off_screen) {
+    const bool inside = place.x >= 0 && place.x <= 1 && place.y >= 0 && place.y <= 1;
+    sample.validity = inside ? GazeValidity::ok : GazeValidity::off_screen;
+  }
+}
+
+void set_direction(GazeSample& sample, GazeKind kind, const ScreenAngles& screen, const Vec3d& direction) {
+  if (kind == GazeKind::direction) {
+    sample.direction = direction;
+    return;
+  }
+  const Vec2d at = screen.place(direction);
+  if (is_finite(Vec3d{at.x, at.y, 0})) {
+    set_place(sample, kind, {at.x, at.y, 0});
+  } else {
+    sample.validity = GazeValidity::lost;  // the gaze is turned away from the screen altogether
+  }
 }
 
 }  // namespace gazetrace

@@ -7,8 +7,7 @@
 #include <limits>
 
 #include "core/nan.hpp"
-#include "gaze/angles.hpp"
-#include "gaze/counter_random.hpp"
+#include "gaze/process/gaze_step.hpp"
 #include "gazetrace/gaze_synth.hpp"
 
 namespace gazetrace {
@@ -188,18 +187,6 @@ EyeEvent true_event(const Phase& phase, std::size_t first, const std::vector<Gaz
   return event;
 }
 
-void place(GazeSample& sample, const Vec3d& direction, GazeKind kind, const ScreenAngles& screen) {
-  if (kind == GazeKind::direction) {
-    sample.direction = direction;
-    return;
-  }
-  const Vec2d at = screen.place(direction);
-  sample.u = at.x;
-  sample.v = at.y;
-  const bool inside = at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1;
-  sample.validity = inside ? GazeValidity::ok : GazeValidity::off_screen;
-}
-
 void lose(GazeSample& sample, GazeValidity validity, GazeKind kind) {
   sample.validity = validity;
   if (kind == GazeKind::direction) {
@@ -252,9 +239,8 @@ SynthGaze synthesize_gaze(const SynthSettings& settings) {
     const Vec2d wander = drift.at(static_cast<double>(sample.t_ns) * 1e-9);
     const Vec2d error = settings.noise_deg > 0 ? noise.normals(i, 0) : Vec2d{};
     const double sd = settings.noise_deg * kRadPerDeg;
-    place(sample,
-          TangentFrame(direction_in(phase, sample.t_ns)).direction({wander.x + sd * error.x, wander.y + sd * error.y}),
-          settings.kind, screen);
+    const TangentFrame frame(direction_in(phase, sample.t_ns));
+    set_direction(sample, settings.kind, screen, frame.direction({wander.x + sd * error.x, wander.y + sd * error.y}));
     EyeMovement label = phase.movement;
     if (phase.movement == EyeMovement::blink) {
       lose(sample, GazeValidity::blink, settings.kind);

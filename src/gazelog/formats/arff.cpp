@@ -34,16 +34,12 @@ ArffHeader read_header(const GazeFile& file) {
       const bool good = value > 0 && value < 1e6;
       header.has_geometry = header.has_geometry || good;
       DisplayGeometry& g = header.geometry;
-      if (good && words[1] == "width_px") {
-        g.width_px = static_cast<int>(std::lround(value));
-      } else if (good && words[1] == "height_px") {
-        g.height_px = static_cast<int>(std::lround(value));
-      } else if (good && words[1] == "width_mm") {
-        g.width_cm = value / 10;
-      } else if (good && words[1] == "height_mm") {
-        g.height_cm = value / 10;
-      } else if (good && words[1] == "distance_mm") {
-        g.distance_cm = value / 10;
+      for (const auto& [name, px] : {std::pair("width_px", &g.width_px), std::pair("height_px", &g.height_px)}) {
+        *px = good && words[1] == name ? static_cast<int>(std::lround(value)) : *px;
+      }
+      for (const auto& [name, cm] : {std::pair("width_mm", &g.width_cm), std::pair("height_mm", &g.height_cm),
+                                     std::pair("distance_mm", &g.distance_cm)}) {
+        *cm = good && words[1] == name ? value / 10 : *cm;
       }
     } else if (key == "@attribute" && words.size() >= 2) {
       header.names.emplace_back(words[1]);
@@ -71,31 +67,30 @@ RawGaze read_gaze_arff(const GazeFile& file, const GazeReadOptions& options) {
   DelimitedTable table = open_headerless(header.rows, ',', header.names);
   table.lines_above = header.lines_above;
   table.place = place_of(file, header.lines_above);
-  const std::string place = place_of(file, header.lines_above);
+  UsedColumns used(table);
   const auto named = [&](const std::string& declared, std::string_view own) {
     if (!declared.empty()) {
-      return declared_column(table, declared, place);
+      return *used.use(declared_column(table, declared));
     }
-    if (const auto found = table.find(own)) {
+    if (const auto found = used.find(own)) {
       return *found;
     }
-    throw Error(ErrorKind::input, place, fmt::format("there is no attribute '{}'", own),
+    throw Error(ErrorKind::input, table.place, fmt::format("there is no attribute '{}'", own),
                 "its attributes are: " + column_listing(table));
   };
-  RawGaze raw;
-  raw.source = file.path;
+  RawGaze raw = raw_of(file, "");
   const std::size_t time = named(options.columns.time, "time");
   const std::size_t x = named(options.columns.x, "x");
   const std::size_t y = named(options.columns.y, "y");
-  const auto confidence = table.find("confidence");
+  const auto confidence = used.find("confidence");
   if (header.has_geometry) {
     raw.recording_geometry = header.geometry;
     add_note(raw, "display size", fmt::format("{}x{} px", header.geometry.width_px, header.geometry.height_px),
              Evidence::header, "%@METADATA");
   }
-  const TimeScale scale = declare_time(raw, options, table.headings[time].text, 3, Evidence::format, place);
+  const TimeScale scale = declare_time(raw, options, table.headings[time].text, 3, Evidence::format, table.place);
   const double least = least_confidence(options, 1e-9);
-  TableRows rows(file, table, cells_up_to({time, x, y, confidence}));
+  TableRows rows(file, table, used.needed());
   while (rows.next()) {
     if (rows.cell(std::size_t{0}).starts_with('%')) {
       continue;
@@ -117,7 +112,7 @@ RawGaze read_gaze_arff(const GazeFile& file, const GazeReadOptions& options) {
     }
     raw.rows.push_back(sample);
   }
-  declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::format, "x, y"}, place);
+  declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::format, "x, y"}, table.place);
   return raw;
 }
 

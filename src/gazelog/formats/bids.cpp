@@ -12,7 +12,6 @@
 #include "gazelog/bids_recording.hpp"
 #include "gazelog/bids_sidecars.hpp"
 #include "gazelog/read_support.hpp"
-#include "gazelog/units.hpp"
 
 namespace gazetrace {
 namespace {
@@ -135,8 +134,7 @@ void read_own_keys(const Sidecars& sidecars, RawGaze& raw) {
 
 double sniff_gaze_bids(const GazeFile& file) {
   const BidsName name = parse_bids_name(file.path);
-  const bool table = name.extension == ".tsv" || name.extension == ".tsv.gz";
-  if (!table || (name.suffix != "physio" && name.suffix != "eyetrack")) {
+  if (!name.is_table() || (name.suffix != "physio" && name.suffix != "eyetrack")) {
     return 0.0;
   }
   const std::string_view head = head_of(file, 4096);

@@ -28,8 +28,7 @@ struct BlockBegin {
 class AscReader {
  public:
   AscReader(const GazeFile& file, const GazeReadOptions& options) : file_(file), options_(options) {
-    raw_.source = file.path;
-    raw_.clock = "tracker, from its start";
+    raw_ = raw_of(file, "tracker, from its start");
     exponent_ = declare_time(raw_, options, "first of a sample", 6, Evidence::format, file.path).exponent;
   }
 
@@ -91,9 +90,8 @@ class AscReader {
       if (in_block_) {
         raw_.warnings.push_back(fmt::format("{}: the recording block that began at {} ns has no END",
                                             place_of(file_, line_), block_start_));
-        raw_.events.push_back({GazeEventType::segment, Eye::cyclopean, block_start_,
-                               raw_.rows.empty() ? block_start_ : raw_.rows.t_ns(raw_.rows.size() - 1),
-                               "recording block without its end", line_ - 1});
+        add_segment(raw_.rows.empty() ? block_start_ : raw_.rows.back().t_ns, "recording block without its end",
+                    line_ - 1);
       }
       block_start_ = time(word(1));
       blocks_.push_back({line_after_end_.value_or(line_), block_start_});
@@ -101,8 +99,7 @@ class AscReader {
       in_block_ = true;
       last_stamp_.clear();
       compared_.fill(raw_.rows.size());  // the clock may start anew
-      block_.has_left = has_word("LEFT") || !has_word("RIGHT");
-      block_.has_right = has_word("RIGHT");
+      read_eyes();
     } else if (key == "END") {
       read_end();
     } else if (key == "SAMPLES") {
@@ -114,10 +111,18 @@ class AscReader {
     }
   }
 
-  void read_samples_line() {
-    block_ = {};
+  void read_eyes() {
     block_.has_left = has_word("LEFT") || !has_word("RIGHT");
     block_.has_right = has_word("RIGHT");
+  }
+
+  void add_segment(std::int64_t end_ns, std::string text, std::int64_t line) {
+    raw_.events.push_back({GazeEventType::segment, Eye::cyclopean, block_start_, end_ns, std::move(text), line});
+  }
+
+  void read_samples_line() {
+    block_ = {};
+    read_eyes();
     block_.data = word(1);
     block_.has_velocity = has_word("VEL");
     block_.has_resolution = has_word("RES");
@@ -138,7 +143,7 @@ class AscReader {
     const std::int64_t t_ns = time(word(1));
     line_after_end_ = line_ + 1;
     if (in_block_) {
-      raw_.events.push_back({GazeEventType::segment, Eye::cyclopean, block_start_, t_ns, "recording block", line_});
+      add_segment(t_ns, "recording block", line_);
     }
     in_block_ = false;
     const auto res = std::find(words_.begin(), words_.end(), "RES");
@@ -256,8 +261,7 @@ class AscReader {
     raw_.events.push_back(std::move(event));
     if (type == GazeEventType::fixation) {
       compare_fixation(eye, begin, end);
-    }
-    if (type != GazeEventType::fixation) {
+    } else {
       (type == GazeEventType::blink ? blinks_ : saccades_)[eye == Eye::right ? 1 : 0].push_back({begin, end});
     }
   }
@@ -399,8 +403,7 @@ class AscReader {
     mark_blinks(raw_.rows, Eye::left, blinks_[0], saccades_[0]);
     mark_blinks(raw_.rows, Eye::right, blinks_[1], saccades_[1]);
     if (in_block_) {
-      raw_.events.push_back({GazeEventType::segment, Eye::cyclopean, block_start_, raw_.rows.back().t_ns,
-                             "recording block without its end", line_});
+      add_segment(raw_.rows.back().t_ns, "recording block without its end", line_);
       raw_.damages.push_back(
           fmt::format("{}: the last recording block has no END: the file may be cut off", file_.path));
     }
@@ -454,9 +457,8 @@ class AscReader {
 
 double sniff_gaze_eyelink(const GazeFile& file) {
   const std::string_view head = head_of(file);
-  const bool converted = head.starts_with("** CONVERTED FROM");
-  const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };
-  if (converted && has("EYELINK")) {
+  const WordsIn has{head};
+  if (head.starts_with("** CONVERTED FROM") && has("EYELINK")) {
     return 0.99;
   }
   const int marks = (has("\nSAMPLES") ? 1 : 0) + (has("\nSTART") ? 1 : 0) + (has("\nMSG") ? 1 : 0) +

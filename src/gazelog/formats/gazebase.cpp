@@ -6,20 +6,13 @@
 #include "gazelog/read_support.hpp"
 
 namespace gazetrace {
-namespace {
-
-DelimitedTable header_of(const GazeFile& file) {
-  return open_table({file.path, std::string(head_of(file).substr(0, file.text.find('\n') + 1))});
-}
-
-}  // namespace
 
 double sniff_gaze_gazebase(const GazeFile& file) {
-  const std::string_view line = head_of(file).substr(0, file.text.find('\n'));
-  if (!line.starts_with("n,x,y")) {
+  if (!file.text.starts_with("n,x,y")) {
     return 0.0;
   }
-  const DelimitedTable table = header_of(file);
+  const GazeFile header{file.path, std::string(first_line_of(file))};
+  const DelimitedTable table = open_table(header);
   const bool vr = table.has_all({"lx", "ly", "rx", "ry"});
   return table.has_all({"n", "x", "y"}) && (vr || table.has_all({"val"})) ? 0.9 : 0.0;
 }

@@ -9,7 +9,6 @@
 // interest under the gaze. Every line ends with a comma. (Gazepoint API and Gazepoint Analysis manuals.)
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 
 #include "core/text.hpp"
@@ -24,7 +23,7 @@ namespace {
 // The pupils of the left and the right eye, in one unit.
 struct GazepointPupils {
   struct Columns {
-    std::optional<std::size_t> size, valid;
+    OptionalColumn size, valid;
   };
   std::array<Columns, 2> eyes;
   std::string unit, columns, detail;  // the last two in words; all are empty where there are no pupils
@@ -36,16 +35,16 @@ struct GazepointPupils {
 struct GazepointPoint {
   Eye eye = Eye::cyclopean;
   std::size_t x = 0, y = 0;
-  std::optional<std::size_t> valid;
+  OptionalColumn valid;
 };
 
 struct GazepointColumns {
-  std::optional<std::size_t> seconds, ticks;  // TIME, TIMETICK
-  std::size_t time = 0;                       // the one of the stamps
+  OptionalColumn seconds, ticks;  // TIME, TIMETICK
+  std::size_t time = 0;           // the one of the stamps
   GazepointPupils pupils;
   std::vector<GazepointPoint> points;
-  std::optional<std::size_t> blink, media, aoi;
-  std::optional<std::size_t> fixation, fixation_valid, fixation_start, fixation_duration;
+  OptionalColumn blink, media, aoi;
+  OptionalColumn fixation, fixation_valid, fixation_start, fixation_duration;
 
   [[nodiscard]] bool is_by_ticks() const { return ticks && time == *ticks; }
   [[nodiscard]] bool state_fixations() const { return fixation && fixation_start && fixation_duration && seconds; }
@@ -66,25 +65,24 @@ double GazepointPupils::of(TableRows& rows, Eye eye) const {
   return count > 0 ? sum / count : kNan;
 }
 
-GazepointPupils find_pupils(const DelimitedTable& table) {
+GazepointPupils find_pupils(const DelimitedTable& table, UsedColumns& used) {
   const auto has = [&](const char* name) { return table.find(name).has_value(); };
   const bool in_mm = has("LPMM") || has("RPMM");
-  if (in_mm) {
-    return {{{{table.find("LPMM"), table.find("LPMMV")}, {table.find("RPMM"), table.find("RPMMV")}}},
-            "mm",
-            "LPMM, RPMM",
-            has("LPD") || has("RPD") ? "LPD and RPD, in pixels of the camera, are left out" : ""};
+  const bool in_px = has("LPD") || has("RPD");
+  if (!in_mm && !in_px) {
+    return {};
   }
-  if (has("LPD") || has("RPD")) {
-    return {{{{table.find("LPD"), table.find("LPV")}, {table.find("RPD"), table.find("RPV")}}},
-            "px",
-            "LPD, RPD",
-            "diameters in pixels of the camera"};
-  }
-  return {};
+  const std::string of_eye = in_mm ? "PMM" : "PD";
+  const std::string valid = in_mm ? "PMMV" : "PV";
+  return {{{{used.find("L" + of_eye), used.find("L" + valid)}, {used.find("R" + of_eye), used.find("R" + valid)}}},
+          in_mm ? "mm" : "px",
+          fmt::format("L{0}, R{0}", of_eye),
+          !in_mm  ? "diameters in pixels of the camera"
+          : in_px ? "LPD and RPD, in pixels of the camera, are left out"
+                  : ""};
 }
 
-std::optional<std::size_t> column_starting(const DelimitedTable& table, std::string_view prefix) {
+OptionalColumn column_starting(const DelimitedTable& table, std::string_view prefix) {
   for (std::size_t i = 0; i < table.headings.size(); ++i) {
     const std::string& text = table.headings[i].text;
     if (text.starts_with(prefix) &&
@@ -95,19 +93,19 @@ std::optional<std::size_t> column_starting(const DelimitedTable& table, std::str
   return std::nullopt;
 }
 
-std::vector<GazepointPoint> find_points(const DelimitedTable& table, const std::string& place) {
+std::vector<GazepointPoint> find_points(const DelimitedTable& table, UsedColumns& used) {
   std::vector<GazepointPoint> points;
   for (const auto& [stem, eye] :
        {std::pair("BPOG", Eye::cyclopean), std::pair("LPOG", Eye::left), std::pair("RPOG", Eye::right)}) {
     const auto x = table.find(fmt::format("{}X", stem));
     const auto y = table.find(fmt::format("{}Y", stem));
     if (x && y) {
-      points.push_back({eye, *x, *y, table.find(fmt::format("{}V", stem))});
+      points.push_back({eye, *used.use(x), *used.use(y), used.find(fmt::format("{}V", stem))});
     }
   }
   if (points.empty()) {
     const bool fixations = table.find("FPOGX").has_value();
-    throw Error(ErrorKind::input, place,
+    throw Error(ErrorKind::input, table.place,
                 fixations ? "there is only FPOG, the mean of the fixation so far" : "there is no point of gaze (BPOGX)",
                 "export all gaze with BPOG, or read FPOGX and FPOGY by `format` generic with "
                 "`x-column` and `y-column`");
@@ -116,38 +114,27 @@ std::vector<GazepointPoint> find_points(const DelimitedTable& table, const std::
 }
 
 GazepointColumns find_gazepoint_columns(const DelimitedTable& table, const GazeReadOptions& options,
-                                        const std::string& place) {
+                                        UsedColumns& used) {
   GazepointColumns c;
   c.seconds = column_starting(table, "TIME");
   c.ticks = column_starting(table, "TIMETICK");
   if (!c.seconds && !c.ticks && options.columns.time.empty()) {
-    throw Error(ErrorKind::input, place, "there is no column TIME(...)", "name it with `time-column`");
+    throw Error(ErrorKind::input, table.place, "there is no column TIME(...)", "name it with `time-column`");
   }
-  c.pupils = find_pupils(table);
-  c.time = time_column(table, options, c.seconds ? *c.seconds : c.ticks.value_or(0), place);
-  c.points = find_points(table, place);
-  c.blink = table.find("BKID");
-  c.media = table.find("MEDIA_ID");
-  c.fixation = table.find("FPOGID");
-  c.fixation_valid = table.find("FPOGV");
-  c.aoi = table.find("AOI");
+  c.pupils = find_pupils(table, used);
+  c.time = used.time(options, c.seconds ? *c.seconds : c.ticks.value_or(0));
+  c.points = find_points(table, used);
+  c.blink = used.find("BKID");
+  c.media = used.find("MEDIA_ID");
+  c.fixation = used.find("FPOGID");
+  c.fixation_valid = used.find("FPOGV");
+  c.aoi = used.find("AOI");
   c.fixation_start = table.find("FPOGS");
   c.fixation_duration = table.find("FPOGD");
+  for (const OptionalColumn& column : {c.fixation_start, c.fixation_duration, c.seconds}) {
+    used.use(c.state_fixations() ? column : std::nullopt);
+  }
   return c;
-}
-
-std::size_t needed_cells(const GazepointColumns& c) {
-  std::size_t needed = cells_up_to({c.time, c.blink, c.media, c.fixation, c.fixation_valid, c.aoi});
-  if (c.state_fixations()) {
-    needed = std::max(needed, cells_up_to({c.fixation_start, c.fixation_duration, c.seconds}));
-  }
-  for (const GazepointPupils::Columns& pupil : c.pupils.eyes) {
-    needed = std::max(needed, cells_up_to({pupil.size, pupil.valid}));
-  }
-  for (const GazepointPoint& point : c.points) {
-    needed = std::max(needed, cells_up_to({point.x, point.y, point.valid}));
-  }
-  return needed;
 }
 
 // The fixations that the log states. A fixation's last row has its whole duration.
@@ -202,11 +189,11 @@ std::optional<int> tick_exponent(const ColumnHeading& heading) {
 
 // The date in the heading of TIME is the wall clock of the start, and is not kept.
 TimeScale declare_stamps(RawGaze& raw, const GazeReadOptions& options, const DelimitedTable& table,
-                         const GazepointColumns& c, const std::string& place) {
+                         const GazepointColumns& c) {
   const ColumnHeading& heading = table.headings[c.time];
   const auto tick = c.is_by_ticks() ? tick_exponent(heading) : std::nullopt;
   const std::string name = c.is_by_ticks() ? "TIMETICK" : c.seconds == c.time ? "TIME" : heading.text;
-  return declare_time(raw, options, name, tick.value_or(9), Evidence::format, place);
+  return declare_time(raw, options, name, tick.value_or(9), Evidence::format, table.place);
 }
 
 // Reads a log whose TIME starts anew, in the row at which `rows` stand, by the ticks of the computer, which go on. That
@@ -239,23 +226,6 @@ void add_samples(RawGaze& raw, TableRows& rows, const GazepointColumns& c, std::
   }
 }
 
-// Of a log that counts the fixations and does not say when they began.
-void label_fixation(LabelRuns& runs, TableRows& rows, const GazepointColumns& c, std::int64_t t_ns) {
-  if (c.fixation && c.fixation_valid && rows.number(*c.fixation_valid) == 1) {
-    runs.add(GazeEventType::fixation, Eye::cyclopean, rows.cell(*c.fixation), t_ns, rows.line());
-  } else {
-    runs.end();
-  }
-}
-
-void label_area(LabelRuns& areas, TableRows& rows, const GazepointColumns& c, std::int64_t t_ns) {
-  if (const std::string_view area = rows.cell(c.aoi); !is_missing(area)) {
-    areas.add(GazeEventType::aoi, Eye::cyclopean, area, t_ns, rows.line(), area);
-  } else {
-    areas.end();
-  }
-}
-
 }  // namespace
 
 double sniff_gaze_gazepoint(const GazeFile& file) {
@@ -265,22 +235,19 @@ double sniff_gaze_gazepoint(const GazeFile& file) {
 
 RawGaze read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
-  const std::string place = place_of(file, table.header_line);
-  const GazepointColumns c = find_gazepoint_columns(table, options, place);
-  RawGaze raw;
-  raw.source = file.path;
-  raw.clock = "recording, from its start";
-  raw.pupil_unit = c.pupils.unit;
+  UsedColumns used(table);
+  const GazepointColumns c = find_gazepoint_columns(table, options, used);
+  RawGaze raw = raw_of(file, "recording, from its start", c.pupils.unit);
   if (!c.pupils.columns.empty()) {
     add_note(raw, "pupil columns", c.pupils.columns, Evidence::header, c.pupils.detail);
   }
-  const TimeScale scale = declare_stamps(raw, options, table, c, place);
+  const TimeScale scale = declare_stamps(raw, options, table, c);
   StatedFixations fixations(c, scale);
-  LabelRuns runs;
+  LabelRuns runs;  // of a log that counts the fixations and does not say when they began
   LabelRuns areas;
   std::string medium;
   std::int64_t last_ns = 0;
-  TableRows rows(file, table, needed_cells(c));
+  TableRows rows(file, table, used.needed());
   while (rows.next()) {
     rows.check_length();
     const std::int64_t t_ns = rows.time_ns(c.time, scale);
@@ -296,10 +263,16 @@ RawGaze read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options
     add_samples(raw, rows, c, t_ns);
     if (c.state_fixations()) {
       fixations.read(rows, t_ns);
+    } else if (c.fixation && c.fixation_valid && rows.number(*c.fixation_valid) == 1) {
+      runs.add(GazeEventType::fixation, Eye::cyclopean, rows.cell(*c.fixation), t_ns, rows.line());
     } else {
-      label_fixation(runs, rows, c, t_ns);
+      runs.end();
     }
-    label_area(areas, rows, c, t_ns);
+    if (const std::string_view area = rows.cell(c.aoi); !is_missing(area)) {
+      areas.add(GazeEventType::aoi, Eye::cyclopean, area, t_ns, rows.line(), area);
+    } else {
+      areas.end();
+    }
   }
   runs.finish(raw);
   fixations.finish(raw);
@@ -307,7 +280,7 @@ RawGaze read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options
   declare_places(raw,
                  {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format,
                   table.headings[c.points.front().x].text + ", " + table.headings[c.points.front().y].text},
-                 place);
+                 table.place);
   return raw;
 }
 

@@ -15,9 +15,7 @@ double sniff_gaze_gazetrace_csv(const GazeFile& file) {
   if (file.text.starts_with(kMark)) {
     return 1.0;
   }
-  const auto has = [line = head_of(file).substr(0, file.text.find('\n'))](std::string_view text) {
-    return line.find(text) != std::string_view::npos;
-  };
+  const WordsIn has{first_line_of(file)};
   return has("t[ns],") && (has("u[1],v[1]") || has("dx,dy,dz")) ? 0.9 : 0.0;
 }
 
@@ -32,30 +30,27 @@ RawGaze read_gaze_gazetrace_csv(const GazeFile& file, const GazeReadOptions& opt
   GazeColumns columns = options.columns;
   if (columns.head_x.empty() && columns.head_rotation_x.empty() &&
       table.has_all({"hx[m]", "hy[m]", "hz[m]", "hqx", "hqy", "hqz", "hqw"})) {
-    columns.head_x = "hx[m]";
-    columns.head_y = "hy[m]";
-    columns.head_z = "hz[m]";
-    columns.head_rotation_x = "hqx";
-    columns.head_rotation_y = "hqy";
-    columns.head_rotation_z = "hqz";
+    std::tie(columns.head_x, columns.head_y, columns.head_z) = std::tuple("hx[m]", "hy[m]", "hz[m]");
+    std::tie(columns.head_rotation_x, columns.head_rotation_y, columns.head_rotation_z) = xyz("hq");
     columns.head_rotation_w = "hqw";
   }
   const bool names = options.columns.valid_values.empty() && options.columns.valid_mask == 0;
   RawGaze raw = read_mapped_table(file, table, columns, names ? ValidityStyle::names : ValidityStyle::any);
-  raw.nominal_rate_hz = preamble.nominal_rate_hz;
-  raw.sample_age_unknown = preamble.sample_age_unknown;
-  if (preamble.eye) {
-    raw.stated_eye = preamble.eye;
-    add_note(raw, "chosen eye", std::string(to_string(*preamble.eye)), Evidence::header,
+  const GazeRecord& stated = preamble.stated;
+  raw.nominal_rate_hz = stated.nominal_rate_hz;
+  raw.sample_age_unknown = stated.sample_age_unknown;
+  raw.stated_eye = stated.stated_eye;
+  raw.device = stated.device;
+  raw.events = stated.events;
+  raw.calibrations = stated.calibrations;
+  raw.head.insert(raw.head.end(), stated.head.begin(), stated.head.end());
+  if (raw.stated_eye) {
+    add_note(raw, "chosen eye", std::string(to_string(*raw.stated_eye)), Evidence::header,
              "chosen before it was converted");
   }
-  if (preamble.device) {
-    raw.device = preamble.device;
-    add_note(raw, "device", std::string(to_string(*preamble.device)), Evidence::header);
+  if (raw.device) {
+    add_note(raw, "device", std::string(to_string(*raw.device)), Evidence::header);
   }
-  raw.events = preamble.events;
-  raw.calibrations = preamble.calibrations;
-  raw.head.insert(raw.head.end(), preamble.head.begin(), preamble.head.end());
   return raw;
 }
 

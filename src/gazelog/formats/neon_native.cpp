@@ -5,33 +5,20 @@
 // scene_camera.json beside them, as Pupil Cloud gives it.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 
 #include "core/text.hpp"
 #include "gazelog/json.hpp"
 #include "gazelog/read_support.hpp"
-#include "gazelog/scene_lens.hpp"
+#include "gazelog/row_samples.hpp"
+#include "gazelog/xdf_file.hpp"
 
 namespace gazetrace {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class Value>
-Value little_endian(const char* at) {
-  std::array<unsigned char, sizeof(Value)> bytes{};
-  std::memcpy(bytes.data(), at, sizeof(Value));
-  if constexpr (std::endian::native == std::endian::big) {
-    std::reverse(bytes.begin(), bytes.end());
-  }
-  return std::bit_cast<Value>(bytes);
-}
 
 std::string sibling(const std::string& path, const std::string& name) {
   return (fs::path(path).parent_path() / name).string();

@@ -5,9 +5,9 @@
 // pose of the same row transforms it there. Loggers of Unity and Unreal write a direction in place of gaze's rotation.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "core/statistics.hpp"
@@ -19,22 +19,17 @@
 namespace gazetrace {
 namespace {
 
-using OptionalColumn = std::optional<std::size_t>;
-template <std::size_t N>
-using Columns = std::array<OptionalColumn, N>;
+using RotationColumns = std::array<OptionalColumn, 4>;  // of x, y, z and w
 
 // "gaze_orientation_x", "gaze.rotation.x", "gaze_qx" and the like.
-template <std::size_t N>
-Columns<N> find_group(const DelimitedTable& table, std::initializer_list<std::string_view> stems) {
-  constexpr std::array<char, 4> kNames{'x', 'y', 'z', 'w'};
+template <class Columns>
+Columns find_group(const DelimitedTable& table, std::initializer_list<std::string_view> stems) {
   for (const std::string_view stem : stems) {
-    Columns<N> columns;
-    bool complete = true;
-    for (std::size_t i = 0; i < N; ++i) {
-      columns[i] = table.find(fmt::format("{}{}", stem, kNames[i]));
-      complete = complete && columns[i].has_value();
+    Columns columns;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      columns[i] = table.find(fmt::format("{}{}", stem, "xyzw"[i]));
     }
-    if (complete) {
+    if (std::all_of(columns.begin(), columns.end(), [](const OptionalColumn& c) { return c.has_value(); })) {
       return columns;
     }
   }
@@ -42,9 +37,8 @@ Columns<N> find_group(const DelimitedTable& table, std::initializer_list<std::st
 }
 
 struct PoseColumns {
-  Columns<4> gaze;
-  Columns<3> direction, gaze_position, head_position;
-  Columns<4> head;
+  RotationColumns gaze, head;
+  VectorColumns direction, gaze_position, head_position;
   OptionalColumn time, sample_time, tracked, flags, confidence, space;
   bool is_engines = false;  // a rotation, as Unity and Unreal call what OpenXR calls an orientation
 
@@ -53,21 +47,22 @@ struct PoseColumns {
 
 PoseColumns find_columns(const DelimitedTable& table) {
   PoseColumns c;
-  c.gaze = find_group<4>(
+  c.gaze = find_group<RotationColumns>(
       table, {"gaze orientation ", "gaze pose orientation ", "eye gaze orientation ", "gaze q", "gaze orientation q"});
   if (!c.gaze[0]) {
-    c.gaze = find_group<4>(table, {"gaze rotation ", "eye gaze rotation "});
+    c.gaze = find_group<RotationColumns>(table, {"gaze rotation ", "eye gaze rotation "});
     c.is_engines = c.gaze[0].has_value();
   }
   if (!c.gaze[0]) {
-    c.direction =
-        find_group<3>(table, {"gaze direction ", "gaze dir ", "gaze forward ", "gaze vector ", "eye direction "});
+    c.direction = find_group<VectorColumns>(
+        table, {"gaze direction ", "gaze dir ", "gaze forward ", "gaze vector ", "eye direction "});
   }
-  c.gaze_position =
-      find_group<3>(table, {"gaze position ", "gaze pose position ", "eye gaze position ", "gaze origin ", "gaze p"});
-  c.head = find_group<4>(table, {"head orientation ", "head rotation ", "head q", "view orientation ",
-                                 "hmd orientation ", "hmd rotation ", "hmd q"});
-  c.head_position = find_group<3>(table, {"head position ", "head p", "view position ", "hmd position ", "hmd p"});
+  c.gaze_position = find_group<VectorColumns>(
+      table, {"gaze position ", "gaze pose position ", "eye gaze position ", "gaze origin ", "gaze p"});
+  c.head = find_group<RotationColumns>(table, {"head orientation ", "head rotation ", "head q", "view orientation ",
+                                               "hmd orientation ", "hmd rotation ", "hmd q"});
+  c.head_position =
+      find_group<VectorColumns>(table, {"head position ", "head p", "view position ", "hmd position ", "hmd p"});
   c.time =
       table.find_any({"time", "timestamp", "xr time", "display time", "predicted display time", "eye data timestamp"});
   c.sample_time = table.find_any({"sample time", "gaze sample time", "gaze time"});
@@ -78,13 +73,9 @@ PoseColumns find_columns(const DelimitedTable& table) {
   return c;
 }
 
-template <std::size_t N>
-std::array<double, N> values(TableRows& rows, const Columns<N>& columns) {
-  std::array<double, N> found{};
-  for (std::size_t i = 0; i < N; ++i) {
-    found[i] = rows.number(columns[i]);
-  }
-  return found;
+Quatd rotation_of(TableRows& rows, const RotationColumns& columns) {
+  const Vec3d axis = rows.vector({columns[0], columns[1], columns[2]});
+  return {axis.x, axis.y, axis.z, rows.number(columns[3])};
 }
 
 // Where a rotation of nothing looks to.
@@ -132,46 +123,37 @@ double world_speed_deg_s(const std::vector<PosedGaze>& gazes, bool is_in_world) 
   return speeds.size() < kFewest ? kNan : lower_quantile(speeds, 0.5);
 }
 
-// Whether the poses of gaze stand in the space of the head's poses rather than in the head. Decided by the places of
-// both, which agree there, and else by how steady gaze is in the world.
-class GazeSpace {
- public:
-  void add(const Vec3d& gaze_m, const Vec3d& head_m) {
-    if (std::isfinite(length(gaze_m)) && std::isfinite(length(head_m))) {
-      from_origin_.push_back(length(gaze_m));
-      from_head_.push_back(length(gaze_m - head_m));
-    }
-  }
-  std::optional<bool> is_world(const std::vector<PosedGaze>& gazes, std::string& evidence) {
-    constexpr double kNearM = 0.2;
-    if (!from_head_.empty()) {
-      const double origin_m = lower_quantile(from_origin_, 0.5);
-      const double head_m = lower_quantile(from_head_, 0.5);
-      if ((origin_m < kNearM) != (head_m < kNearM)) {
-        evidence =
-            fmt::format("gaze begins {:.2f} m from the origin and {:.2f} m from the head's place", origin_m, head_m);
-        return head_m < kNearM;
-      }
-    }
-    const double as_head = world_speed_deg_s(gazes, false);
-    const double as_world = world_speed_deg_s(gazes, true);
-    evidence = fmt::format(
-        "while the head turns, gaze in the world moves by {:.1f} deg/s if it stands in the head, by "
-        "{:.1f} deg/s if in the world",
-        as_head, as_world);
-    constexpr double kClear = 2;
-    if (as_head > kClear * as_world || as_world > kClear * as_head) {
-      return as_head > as_world;
-    }
-    return std::nullopt;
-  }
-
- private:
-  std::vector<double> from_origin_, from_head_;
+// How far the places of gaze lie from the origin, and from the head's.
+struct GazeDistances {
+  std::vector<double> from_origin, from_head;
 };
 
-bool is_rotation(const std::array<double, 4>& q) {
-  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+// Whether the poses of gaze stand in the space of the head's poses rather than in the head. Decided by the places of
+// both, which agree there, and else by how steady gaze is in the world.
+std::optional<bool> is_in_world(GazeDistances& places, const std::vector<PosedGaze>& gazes, std::string& evidence) {
+  constexpr double kNearM = 0.2;
+  if (!places.from_head.empty()) {
+    const double origin_m = lower_quantile(places.from_origin, 0.5);
+    const double head_m = lower_quantile(places.from_head, 0.5);
+    if ((origin_m < kNearM) != (head_m < kNearM)) {
+      evidence =
+          fmt::format("gaze begins {:.2f} m from the origin and {:.2f} m from the head's place", origin_m, head_m);
+      return head_m < kNearM;
+    }
+  }
+  const double as_head = world_speed_deg_s(gazes, false);
+  const double as_world = world_speed_deg_s(gazes, true);
+  evidence = fmt::format(
+      "while the head turns, gaze in the world moves by {:.1f} deg/s if it stands in the head, by "
+      "{:.1f} deg/s if in the world",
+      as_head, as_world);
+  constexpr double kClear = 2;
+  const bool is_clear = as_head > kClear * as_world || as_world > kClear * as_head;
+  return is_clear ? std::optional(as_head > as_world) : std::nullopt;
+}
+
+bool is_rotation(const Quatd& q) {
+  const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   return std::isfinite(norm) && norm > 1e-6;
 }
 
@@ -191,14 +173,14 @@ bool is_tracked(TableRows& rows, const PoseColumns& c) {
 
 // Turns gaze that stands in the world into the head.
 void settle_space(RawGaze& raw, const GazeReadOptions& options, const PoseColumns& c, bool has_head,
-                  const std::vector<PosedGaze>& gazes, GazeSpace space_of_gaze, const std::string& place) {
+                  const std::vector<PosedGaze>& gazes, GazeDistances& places, const std::string& place) {
   if (c.space || !has_head) {
     return;
   }
   bool is_world = options.frame == GazeFrame::world;
   std::string evidence;
   if (options.frame != GazeFrame::world && options.frame != GazeFrame::head) {
-    const std::optional<bool> found = space_of_gaze.is_world(gazes, evidence);
+    const std::optional<bool> found = is_in_world(places, gazes, evidence);
     if (!found) {
       raw.faults.push_back({"gaze-space", place,
                             "whether the poses of gaze stand in the head or in the world of the head's poses is "
@@ -214,13 +196,10 @@ void settle_space(RawGaze& raw, const GazeReadOptions& options, const PoseColumn
   if (!is_world) {
     return;
   }
-  RawRows rows;
-  for (std::size_t i = 0; i < raw.rows.size(); ++i) {
-    RawSample sample = raw.rows[i];
+  raw.rows.change_each([&](std::size_t i, RawSample sample) {
     sample.at = rotate(inverse(gazes[i].head), sample.at);
-    rows.push_back(sample);
-  }
-  raw.rows = std::move(rows);
+    return sample;
+  });
 }
 
 }  // namespace
@@ -238,19 +217,18 @@ double sniff_gaze_openxr(const GazeFile& file) {
 
 RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
-  const std::string place = place_of(file, table.header_line);
+  const std::string& place = table.place;
+  UsedColumns used(table);
   const PoseColumns c = find_columns(table);
   if (!c.has_gaze() || (!c.time && options.columns.time.empty())) {
     throw Error(ErrorKind::input, place, "there are no columns of time and of gaze's orientation, x, y, z, w",
                 "the columns are: " + column_listing(table));
   }
-  RawGaze raw;
-  raw.source = file.path;
-  raw.kind = GazeKind::direction;
   const bool is_own_table = !c.gaze[0];  // a pose's unit and axes are OpenXR's, a direction's are anybody's
+  RawGaze raw = raw_of(file, is_own_table ? "" : "XrTime");
+  raw.kind = GazeKind::direction;
   raw.is_own_table = is_own_table;
-  raw.clock = is_own_table ? "" : "XrTime";
-  const std::size_t time = time_column(table, options, c.time.value_or(0), place);
+  const std::size_t time = used.time(options, c.time.value_or(0));
   const auto stated = time_exponent(table.headings[time].unit);
   const auto given = time_exponent_of(options.columns.time_unit);
   const int otherwise = !is_own_table ? 0 : given ? *given : time_exponent_by_statistics(file, table, time, raw);
@@ -263,21 +241,23 @@ RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
   const GazeAxes head_axes = options.columns.head_axes == GazeAxes::automatic ? axes : options.columns.head_axes;
   const bool has_head = c.head[0].has_value();
   std::vector<PosedGaze> gazes;  // of rows that state no space
-  GazeSpace space_of_gaze;
+  GazeDistances places;
   std::string last_sample_time;
   std::size_t repeats = 0;
   TableRows rows(file, table, table.headings.size());
   while (rows.next()) {
     rows.check_length();
     const std::int64_t t_ns = rows.time_ns(time, scale);
-    const std::array<double, 4> h = values(rows, c.head);
-    const Quatd head{h[0], h[1], h[2], h[3]};
-    const bool head_known = has_head && is_rotation(h);
+    const Quatd head = rotation_of(rows, c.head);
+    const bool head_known = has_head && is_rotation(head);
     if (head_known && c.head_position[0]) {
-      const auto p = values(rows, c.head_position);
-      const auto g = values(rows, c.gaze_position);
-      space_of_gaze.add({g[0], g[1], g[2]}, {p[0], p[1], p[2]});
-      raw.head.push_back(head_pose_from_axes(t_ns, {p[0], p[1], p[2]}, head, head_axes));
+      const Vec3d head_m = rows.vector(c.head_position);
+      const Vec3d gaze_m = rows.vector(c.gaze_position);
+      if (is_finite(gaze_m) && is_finite(head_m)) {
+        places.from_origin.push_back(length(gaze_m));
+        places.from_head.push_back(length(gaze_m - head_m));
+      }
+      raw.head.push_back(head_pose_from_axes(t_ns, head_m, head, head_axes));
     }
     // Runtimes that cannot interpolate clamp the time, which gives the same sample again. 0 is an unknown time.
     const std::string_view sample_time = rows.cell(c.sample_time);
@@ -288,11 +268,9 @@ RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
     last_sample_time = sample_time;
     RawSample sample = missing_row(t_ns, rows.line(), Eye::cyclopean);
     sample.confidence = static_cast<float>(rows.number(c.confidence));
-    const std::array<double, 4> q = values(rows, c.gaze);
-    const std::array<double, 3> d = values(rows, c.direction);
-    const Vec3d direction =
-        c.gaze[0] ? rotate(normalize(Quatd{q[0], q[1], q[2], q[3]}), ahead_in(axes)) : Vec3d{d[0], d[1], d[2]};
-    if (c.gaze[0] ? is_rotation(q) : length(direction) > 0) {
+    const Quatd gaze = rotation_of(rows, c.gaze);
+    const Vec3d direction = c.gaze[0] ? rotate(normalize(gaze), ahead_in(axes)) : rows.vector(c.direction);
+    if (c.gaze[0] ? is_rotation(gaze) : length(direction) > 0) {
       sample.at = direction;
       sample.validity = is_tracked(rows, c) ? GazeValidity::ok : GazeValidity::lost;
       const std::string space = to_lower(rows.cell(c.space));
@@ -307,7 +285,7 @@ RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
     gazes.push_back({t_ns, sample.at, head_known ? normalize(head) : Quatd{}});
     raw.rows.push_back(sample);
   }
-  settle_space(raw, options, c, has_head, gazes, space_of_gaze, place);
+  settle_space(raw, options, c, has_head, gazes, places, place);
   if (repeats > 0) {
     raw.warnings.push_back(
         fmt::format("{}: {} rows repeat the sample of the row before; left out", file.path, repeats));

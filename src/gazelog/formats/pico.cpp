@@ -6,21 +6,6 @@
 #include "gazelog/mapped_table.hpp"
 
 namespace gazetrace {
-namespace {
-
-GazeColumns preset() {
-  GazeColumns c;
-  c.time = "Timeline";
-  c.time_unit = TimeUnit::s;
-  std::tie(c.x, c.y, c.z) = xyz("Combine Eye Gaze Vector. ");
-  std::tie(c.head_x, c.head_y, c.head_z) = xyz("Head Position. ");
-  std::tie(c.head_rotation_x, c.head_rotation_y, c.head_rotation_z) = xyz("Head Rotation. ");
-  c.axes = GazeAxes::unity;
-  c.head_axes = GazeAxes::unity;
-  return c;
-}
-
-}  // namespace
 
 double sniff_gaze_pico(const GazeFile& file) {
   const WordsIn has{first_line_of(file)};
@@ -28,7 +13,13 @@ double sniff_gaze_pico(const GazeFile& file) {
 }
 
 RawGaze read_gaze_pico(const GazeFile& file, const GazeReadOptions& options) {
-  RawGaze raw = read_preset(file, open_table(file), options, preset());
+  GazeColumns c;
+  c.time = "Timeline";
+  c.time_unit = TimeUnit::s;
+  std::tie(c.x, c.y, c.z) = xyz("Combine Eye Gaze Vector. ");
+  take_unity_head(c, "Head Position. ", "Head Rotation. ");
+  c.axes = GazeAxes::unity;
+  RawGaze raw = read_preset(file, open_table(file), options, c);
   raw.sample_age_unknown = true;
   raw.clock = "frames of the display";
   return raw;

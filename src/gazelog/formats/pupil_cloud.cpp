@@ -3,12 +3,10 @@
 // camera's picture from the top left, `azimuth [deg]` and `elevation [deg]` from the scene camera's axis, right and up,
 // `worn`, `fixation id`, `blink id`, and `recording id` where several recordings were exported together. During a blink
 // the places go on and mean nothing.
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/text.hpp"
 #include "gazelog/read_support.hpp"
 #include "gazelog/recordings.hpp"
 
@@ -17,26 +15,25 @@ namespace {
 
 struct CloudColumns {
   std::size_t time = 0, x = 0, y = 0;
-  std::optional<std::size_t> azimuth, elevation, worn, blink, fixation;
+  OptionalColumn azimuth, elevation, worn, blink, fixation;
 };
 
-CloudColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, const std::string& place) {
+CloudColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, UsedColumns& used) {
   const auto own_time = table.find("timestamp [ns]");
-  const auto x = table.find("gaze x [px]");
-  const auto y = table.find("gaze y [px]");
-  const auto azimuth = table.find("azimuth [deg]");
-  const auto elevation = table.find("elevation [deg]");
+  const auto x = used.find("gaze x [px]");
+  const auto y = used.find("gaze y [px]");
+  const auto azimuth = used.find("azimuth [deg]");
+  const auto elevation = used.find("elevation [deg]");
   if (!own_time || !x || !y) {
-    throw Error(ErrorKind::input, place, "there are no columns 'timestamp [ns]', 'gaze x [px]' and 'gaze y [px]'",
+    throw Error(ErrorKind::input, table.place, "there are no columns 'timestamp [ns]', 'gaze x [px]' and 'gaze y [px]'",
                 "the columns are: " + column_listing(table));
   }
   if (options.frame == GazeFrame::head && (!azimuth || !elevation)) {
-    throw Error(ErrorKind::input, place, "it has no azimuth and elevation, only places on the scene picture",
+    throw Error(ErrorKind::input, table.place, "it has no azimuth and elevation, only places on the scene picture",
                 "export again from a newer Pupil Cloud");
   }
-  CloudColumns c{0, *x, *y, azimuth, elevation, table.find("worn"), table.find("blink id"), table.find("fixation id")};
-  c.time = time_column(table, options, *own_time, place);
-  return c;
+  return {used.time(options, *own_time), *x, *y, azimuth, elevation, used.find("worn"), used.find("blink id"),
+          used.find("fixation id")};
 }
 
 // A row with the direction from the head, or else with the place on the scene camera's picture.
@@ -51,12 +48,6 @@ RawSample sample_of(TableRows& rows, const CloudColumns& c, GazeKind kind, std::
   return sample;
 }
 
-void declare_angles(RawGaze& raw, const std::string& place) {
-  declare_directions(raw, {"azimuth [deg], elevation [deg]", Evidence::header}, GazeAxes::gl, Evidence::format, place);
-  raw.declared.form = PlaceForm::azimuth_elevation;
-  raw.declared.unit = {PositionUnit::deg, Evidence::header, {}};
-}
-
 }  // namespace
 
 double sniff_gaze_pupil_cloud(const GazeFile& file) {
@@ -69,20 +60,16 @@ double sniff_gaze_pupil_cloud(const GazeFile& file) {
 
 RawGaze read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
-  const std::string place = place_of(file, table.header_line);
-  const CloudColumns c = find_columns(table, options, place);
-  RawGaze raw;
+  UsedColumns used(table);
+  const CloudColumns c = find_columns(table, options, used);
+  RawGaze raw = raw_of(file, "UTC, from 1970");
   raw.way_out = "map gaze onto a surface in Pupil Cloud, or take directions from the head with `frame` head";
-  raw.source = file.path;
-  raw.clock = "UTC, from 1970";
   raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
-  const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, 0, Evidence::header, place);
+  const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, 0, Evidence::header, table.place);
   RecordingColumns recordings(table, options.columns.recording, {"recording id"});
   LabelRuns runs;
   WitnessTally angles;
-  TableRows rows(file, table,
-                 std::max(recordings.needed_cells(),
-                          cells_up_to({c.time, c.x, c.y, c.azimuth, c.elevation, c.worn, c.blink, c.fixation})));
+  TableRows rows(file, table, std::max(used.needed(), recordings.needed_cells()));
   while (rows.next()) {
     rows.check_length();
     if (recordings.note(rows, raw)) {
@@ -99,12 +86,15 @@ RawGaze read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& optio
   runs.finish(raw);
   angles.finish(raw, "azimuth and elevation");
   if (raw.kind == GazeKind::direction) {
-    declare_angles(raw, place);
+    declare_directions(raw, {"azimuth [deg], elevation [deg]", Evidence::header}, GazeAxes::gl, Evidence::format,
+                       table.place);
+    raw.declared.form = PlaceForm::azimuth_elevation;
+    raw.declared.unit = {PositionUnit::deg, Evidence::header, {}};
     return raw;
   }
   guess_picture_size(raw);
   declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, "gaze x [px], gaze y [px]"},
-                 place);
+                 table.place);
   return raw;
 }
 

@@ -5,11 +5,9 @@
 // erratic places; rows of one eye leave the cells of the other eye empty.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/text.hpp"
 #include "gazelog/read_support.hpp"
 
 namespace gazetrace {
@@ -17,61 +15,41 @@ namespace {
 
 constexpr double kLeastConfidence = 0.6;  // as Pupil Labs advise
 
-using Triple = std::array<std::size_t, 3>;
-
 struct CoreColumns {
   std::size_t time = 0, confidence = 0, x = 0, y = 0;
-  std::array<std::optional<Triple>, 2> normal, center;
-  std::optional<Triple> point;
-  std::size_t needed = 0;
+  std::array<VectorColumns, 2> normal, center;
+  VectorColumns point;
 };
 
-CoreColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, const std::string& place) {
+CoreColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, UsedColumns& used) {
   CoreColumns c;
-  const auto need = [&](std::string_view name) {
-    const auto found = table.find(name);
-    if (!found) {
-      throw Error(ErrorKind::input, place, fmt::format("there is no column '{}'", name),
-                  "the columns are: " + column_listing(table));
-    }
-    c.needed = std::max(c.needed, *found + 1);
-    return *found;
-  };
   // canonical_timestamp_s: Ego4D, which has Pupil's other columns.
   const auto own = table.find_any({"gaze_timestamp", "timestamp", "canonical_timestamp_s"});
-  c.time = time_column(table, options, own || !options.columns.time.empty() ? own.value_or(0) : need("gaze_timestamp"),
-                       place);
-  c.confidence = need("confidence");
-  c.x = need("norm_pos_x");
-  c.y = need("norm_pos_y");
-  const auto triple = [&](std::string_view stem) -> std::optional<Triple> {
-    if (!table.find(fmt::format("{}_x", stem))) {
-      return std::nullopt;
-    }
-    return Triple{need(fmt::format("{}_x", stem)), need(fmt::format("{}_y", stem)), need(fmt::format("{}_z", stem))};
+  const bool needs_own = !own && options.columns.time.empty();
+  c.time = used.time(options, needs_own ? used.require("gaze_timestamp") : own.value_or(0));
+  c.confidence = used.require("confidence");
+  c.x = used.require("norm_pos_x");
+  c.y = used.require("norm_pos_y");
+  const auto vector = [&](const std::string& stem) {
+    return table.find(stem + "_x")
+               ? VectorColumns{used.require(stem + "_x"), used.require(stem + "_y"), used.require(stem + "_z")}
+               : VectorColumns{};
   };
-  c.point = triple("gaze_point_3d");
+  c.point = vector("gaze_point_3d");
   for (std::size_t eye = 0; eye < 2; ++eye) {
-    c.normal[eye] = triple(fmt::format("gaze_normal{}", eye));
-    c.center[eye] = triple(fmt::format("eye_center{}_3d", eye));
+    c.normal[eye] = vector(fmt::format("gaze_normal{}", eye));
+    c.center[eye] = vector(fmt::format("eye_center{}_3d", eye));
   }
-  c.needed = std::max(c.needed, c.time + 1);
   return c;
 }
 
-Vec3d vector(TableRows& rows, const std::optional<Triple>& columns) {
-  return columns ? Vec3d{rows.number((*columns)[0]), rows.number((*columns)[1]), rows.number((*columns)[2])}
-                 : Vec3d{kNan, kNan, kNan};
-}
-
 // Documents disagree on which eye is 0: the one whose center lies further right (+x) is the right one.
-bool eye_0_is_right(const GazeFile& file, const DelimitedTable& table, const CoreColumns& c, RawGaze& raw) {
+bool eye_0_is_right(TableRows rows, const CoreColumns& c, RawGaze& raw) {
   double sum = 0;
   std::size_t count = 0;
-  TableRows rows(file, table, c.needed);
   while (count < 2000 && rows.next()) {
     rows.check_length();
-    const double difference = vector(rows, c.center[0]).x - vector(rows, c.center[1]).x;
+    const double difference = rows.vector(c.center[0]).x - rows.vector(c.center[1]).x;
     if (std::isfinite(difference)) {
       sum += difference;
       ++count;
@@ -99,24 +77,23 @@ double sniff_gaze_pupil_core(const GazeFile& file) {
 
 RawGaze read_gaze_pupil_core(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
-  const std::string place = place_of(file, table.header_line);
-  const CoreColumns c = find_columns(table, options, place);
-  RawGaze raw;
+  UsedColumns used(table);
+  const CoreColumns c = find_columns(table, options, used);
+  RawGaze raw = raw_of(file, "Pupil, arbitrary zero");
   raw.way_out =
       "export gaze on a surface (gaze_positions_on_surface_....csv), or take directions from the head "
       "with `frame` head";
-  raw.source = file.path;
-  raw.clock = "Pupil, arbitrary zero";
   raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
-  const bool by_eye = c.normal[0] && c.normal[1];
+  const bool by_eye = c.normal[0][0] && c.normal[1][0];
   if (raw.kind == GazeKind::direction && !by_eye) {
-    throw Error(ErrorKind::input, place, "it has no directions (gaze_normal0_x, ...), only places on the scene picture",
+    throw Error(ErrorKind::input, table.place,
+                "it has no directions (gaze_normal0_x, ...), only places on the scene picture",
                 "export again with the 3D gaze mapper, or a surface");
   }
-  const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, 9, Evidence::format, place);
+  const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, 9, Evidence::format, table.place);
   const double least = least_confidence(options, kLeastConfidence);
-  const bool right_first = by_eye && eye_0_is_right(file, table, c, raw);
-  TableRows rows(file, table, c.needed);
+  TableRows rows(file, table, used.needed());
+  const bool right_first = by_eye && eye_0_is_right(rows, c, raw);
   WitnessTally points;
   while (rows.next()) {
     rows.check_length();
@@ -134,7 +111,7 @@ RawGaze read_gaze_pupil_core(const GazeFile& file, const GazeReadOptions& option
       RawSample sample = missing_row(t_ns, rows.line(), Eye::cyclopean);
       sample.at.x = rows.number(c.x);
       sample.at.y = rows.number(c.y);
-      if (const Vec3d at = vector(rows, c.point); validity == GazeValidity::ok && at.z > 0) {
+      if (const Vec3d at = rows.vector(c.point); validity == GazeValidity::ok && at.z > 0) {
         points.add(sample.at.x, sample.at.y, at.x / at.z, -at.y / at.z);
       }
       add(sample, !std::isnan(sample.at.x) && !std::isnan(sample.at.y));
@@ -144,9 +121,9 @@ RawGaze read_gaze_pupil_core(const GazeFile& file, const GazeReadOptions& option
     for (std::size_t i = 0; i < 2; ++i) {
       const bool right = (i == 0) == right_first;
       RawSample sample = missing_row(t_ns, rows.line(), right ? Eye::right : Eye::left);
-      sample.at = vector(rows, c.normal[i]);
+      sample.at = rows.vector(c.normal[i]);
       add(sample, length(sample.at) > 0);
-      origins[right ? 1 : 0] = to_float(vector(rows, c.center[i]));
+      origins[right ? 1 : 0] = to_float(rows.vector(c.center[i]));
     }
     raw.origins.push_back({origins[0], origins[1], t_ns});
   }
@@ -154,10 +131,12 @@ RawGaze read_gaze_pupil_core(const GazeFile& file, const GazeReadOptions& option
   add_note(raw, "least confidence", fmt::format("{}", least),
            std::isnan(options.min_confidence) ? Evidence::format : Evidence::option);
   if (raw.kind == GazeKind::direction) {
-    declare_directions(raw, {"gaze_normal0, gaze_normal1", Evidence::header}, GazeAxes::cv, Evidence::format, place);
+    declare_directions(raw, {"gaze_normal0, gaze_normal1", Evidence::header}, GazeAxes::cv, Evidence::format,
+                       table.place);
   } else {
-    declare_places(
-        raw, {PositionUnit::fraction, PositionOrigin::bottom_left, Evidence::format, "norm_pos_x, norm_pos_y"}, place);
+    declare_places(raw,
+                   {PositionUnit::fraction, PositionOrigin::bottom_left, Evidence::format, "norm_pos_x, norm_pos_y"},
+                   table.place);
   }
   return raw;
 }

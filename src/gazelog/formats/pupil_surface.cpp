@@ -2,12 +2,10 @@
 // Gaze on a surface: Pupil Core's gaze_positions_on_surface_NAME.csv (x_norm, y_norm from the bottom left, on_surf,
 // confidence, seconds of Pupil's clock) and Pupil Cloud's marker mapper (gaze position on surface x [normalized] from
 // the top left, nanoseconds). Gaze beside the surface is off screen.
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/text.hpp"
 #include "gazelog/read_support.hpp"
 #include "gazelog/recordings.hpp"
 
@@ -15,10 +13,6 @@ namespace gazetrace {
 namespace {
 
 constexpr double kLeastConfidence = 0.6;  // as Pupil Labs advise
-
-bool is_cloud(const DelimitedTable& table) {
-  return table.find("gaze position on surface x").has_value();
-}
 
 }  // namespace
 
@@ -30,29 +24,26 @@ double sniff_gaze_pupil_surface(const GazeFile& file) {
 
 RawGaze read_gaze_pupil_surface(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
-  const std::string place = place_of(file, table.header_line);
-  const bool cloud = is_cloud(table);
+  UsedColumns used(table);
+  const bool cloud = table.find("gaze position on surface x").has_value();
   const auto time = cloud ? table.find("timestamp") : table.find_any({"gaze_timestamp", "world_timestamp"});
-  const auto x = cloud ? table.find("gaze position on surface x") : table.find("x_norm");
-  const auto y = cloud ? table.find("gaze position on surface y") : table.find("y_norm");
+  const auto x = used.find(cloud ? "gaze position on surface x" : "x_norm");
+  const auto y = used.find(cloud ? "gaze position on surface y" : "y_norm");
   if (!time || !x || !y) {
-    throw Error(ErrorKind::input, place, "there are no columns of time and of places on a surface",
+    throw Error(ErrorKind::input, table.place, "there are no columns of time and of places on a surface",
                 "the columns are: " + column_listing(table));
   }
-  const auto confidence = table.find("confidence");
-  const auto blink = table.find("blink id");
-  const auto fixation = table.find("fixation id");
-  RawGaze raw;
-  raw.source = file.path;
-  raw.clock = cloud ? "UTC, from 1970" : "Pupil, arbitrary zero";
-  const std::size_t time_at = time_column(table, options, *time, place);
+  const auto confidence = used.find("confidence");
+  const auto blink = used.find("blink id");
+  const auto fixation = used.find("fixation id");
+  RawGaze raw = raw_of(file, cloud ? "UTC, from 1970" : "Pupil, arbitrary zero");
+  const std::size_t time_at = used.time(options, *time);
   const TimeScale scale = declare_time(raw, options, table.headings[time_at].text, cloud ? 0 : 9,
-                                       cloud ? Evidence::header : Evidence::format, place);
+                                       cloud ? Evidence::header : Evidence::format, table.place);
   const double least = least_confidence(options, kLeastConfidence);
   RecordingColumns recordings(table, options.columns.recording, {"recording id"});
   LabelRuns runs;
-  TableRows rows(file, table,
-                 std::max(recordings.needed_cells(), cells_up_to({time_at, x, y, confidence, blink, fixation})));
+  TableRows rows(file, table, std::max(used.needed(), recordings.needed_cells()));
   while (rows.next()) {
     rows.check_length();
     if (recordings.note(rows, raw)) {
@@ -77,7 +68,7 @@ RawGaze read_gaze_pupil_surface(const GazeFile& file, const GazeReadOptions& opt
   declare_places(raw,
                  {PositionUnit::fraction, cloud ? PositionOrigin::top_left : PositionOrigin::bottom_left,
                   Evidence::format, table.headings[*x].text + ", " + table.headings[*y].text},
-                 place);
+                 table.place);
   return raw;
 }
 

@@ -16,12 +16,12 @@ namespace {
 struct SmiEye {
   Eye eye = Eye::left;
   std::size_t x = 0, y = 0;
-  std::optional<std::size_t> pupil, validity, event;
+  OptionalColumn pupil, validity, event;
 };
 
 struct SmiColumns {
   std::size_t time = 0, type = 0;
-  std::optional<std::size_t> trial;
+  OptionalColumn trial;
   std::vector<SmiEye> eyes;
 };
 
@@ -63,10 +63,10 @@ void read_preamble_lines(const DelimitedTable& table, RawGaze& raw) {
   }
 }
 
-std::vector<SmiEye> find_eyes(const DelimitedTable& table, const std::string& place) {
+std::vector<SmiEye> find_eyes(const DelimitedTable& table, UsedColumns& used) {
   std::vector<SmiEye> eyes;
   for (const auto& [letter, eye] : {std::pair("L", Eye::left), std::pair("R", Eye::right)}) {
-    const auto column = [&table, side = letter](std::string_view name) {
+    const auto column = [&, side = letter](std::string_view name) {
       return table.find(fmt::format("{} {}", side, name));
     };
     const auto x = column("POR X [px]");
@@ -74,49 +74,25 @@ std::vector<SmiEye> find_eyes(const DelimitedTable& table, const std::string& pl
     if (x && y) {
       const auto diameter = column("Pupil Diameter [mm]");
       const auto mapped = diameter ? diameter : column("Mapped Diameter [mm]");
-      eyes.push_back({eye, *x, *y, mapped ? mapped : column("Dia X [px]"), column("Validity"), column("Event Info")});
+      eyes.push_back({eye, *used.use(x), *used.use(y), used.use(mapped ? mapped : column("Dia X [px]")),
+                      used.use(column("Validity")), used.use(column("Event Info"))});
     }
   }
   if (eyes.empty()) {
-    throw Error(ErrorKind::input, place, "there is no point of regard (L POR X [px], R POR X [px])",
+    throw Error(ErrorKind::input, table.place, "there is no point of regard (L POR X [px], R POR X [px])",
                 "Raw columns are places in the eye camera's picture; export again with POR");
   }
   return eyes;
 }
 
-SmiColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, const std::string& place) {
+SmiColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, UsedColumns& used) {
   const auto own_time = table.find("Time");
-  const auto type = table.find("Type");
+  const auto type = used.find("Type");
   if (!own_time || !type) {
-    throw Error(ErrorKind::input, place, "there are no columns 'Time' and 'Type'", "is this an SMI export?");
+    throw Error(ErrorKind::input, table.place, "there are no columns 'Time' and 'Type'", "is this an SMI export?");
   }
-  std::vector<SmiEye> eyes = find_eyes(table, place);
-  const std::size_t time = time_column(table, options, *own_time, place);
-  return {time, *type, table.find("Trial"), std::move(eyes)};
-}
-
-std::size_t needed_cells(const SmiColumns& c) {
-  std::size_t needed = cells_up_to({c.time, c.type});
-  for (const SmiEye& eye : c.eyes) {
-    needed = std::max(needed, cells_up_to({eye.x, eye.y, eye.pupil, eye.validity, eye.event}));
-  }
-  return needed;
-}
-
-std::string position_headings(const DelimitedTable& table, const std::vector<SmiEye>& eyes) {
-  std::string headings;
-  for (const SmiEye& eye : eyes) {
-    headings += (headings.empty() ? "" : ", ") + table.headings[eye.x].text + ", " + table.headings[eye.y].text;
-  }
-  return headings;
-}
-
-std::string pupil_unit(const DelimitedTable& table, const std::vector<SmiEye>& eyes) {
-  std::string unit;
-  for (const SmiEye& eye : eyes) {
-    unit = eye.pupil ? table.headings[*eye.pupil].unit : unit;
-  }
-  return unit;
+  std::vector<SmiEye> eyes = find_eyes(table, used);
+  return {used.time(options, *own_time), *type, table.find("Trial"), std::move(eyes)};
 }
 
 // The rows of one trial are a segment of the log. `trial` is the name of the one in which the row before was.
@@ -150,26 +126,27 @@ RawSample sample_of(TableRows& rows, const SmiEye& eye, std::int64_t t_ns) {
 }  // namespace
 
 double sniff_gaze_smi(const GazeFile& file) {
-  const std::string_view head = head_of(file);
-  const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };
+  const WordsIn has{head_of(file)};
   const bool columns = has("Time\tType\t") && (has("POR X [px]") || has("Raw X [px]"));
-  const bool preamble = head.starts_with("## ") && (has("[iView]") || has("BeGaze"));
+  const bool preamble = file.text.starts_with("## ") && (has("[iView]") || has("BeGaze"));
   return columns && preamble ? 0.99 : columns ? 0.9 : preamble ? 0.6 : 0.0;
 }
 
 RawGaze read_gaze_smi(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
-  const std::string place = place_of(file, table.header_line);
-  const SmiColumns c = find_columns(table, options, place);
-  RawGaze raw;
-  raw.source = file.path;
-  raw.clock = "tracker";
-  raw.pupil_unit = pupil_unit(table, c.eyes);
+  UsedColumns used(table);
+  const SmiColumns c = find_columns(table, options, used);
+  RawGaze raw = raw_of(file, "tracker");
+  std::string columns;
+  for (const SmiEye& eye : c.eyes) {
+    raw.pupil_unit = eye.pupil ? table.headings[*eye.pupil].unit : raw.pupil_unit;
+    columns += (columns.empty() ? "" : ", ") + table.headings[eye.x].text + ", " + table.headings[eye.y].text;
+  }
   read_preamble_lines(table, raw);
-  const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, 3, Evidence::format, place);
+  const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, 3, Evidence::format, table.place);
   std::string trial;
   LabelRuns runs;
-  TableRows rows(file, table, needed_cells(c));
+  TableRows rows(file, table, used.needed());
   while (rows.next()) {
     const std::int64_t t_ns = rows.time_ns(c.time, scale);
     const std::string_view type = rows.cell(c.type);
@@ -190,8 +167,7 @@ RawGaze read_gaze_smi(const GazeFile& file, const GazeReadOptions& options) {
     }
   }
   runs.finish(raw);
-  declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, position_headings(table, c.eyes)},
-                 place);
+  declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, columns}, table.place);
   return raw;
 }
 

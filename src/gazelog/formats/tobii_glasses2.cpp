@@ -90,13 +90,8 @@ void add_samples(const GazeOfIndex& gaze, RawGaze& raw) {
     return;
   }
   for (std::size_t side = 0; side < 2; ++side) {
-    RawSample sample = missing_row(gaze.t_ns, gaze.row, side == 0 ? Eye::left : Eye::right);
-    sample.pupil = static_cast<float>(gaze.pupil_mm[side]);
-    if (!gaze.bad[side] && length(gaze.direction[side]) > 0) {
-      sample.at = gaze.direction[side];
-      sample.validity = GazeValidity::ok;
-    }
-    raw.rows.push_back(sample);
+    const Vec3d direction = gaze.bad[side] ? Vec3d{} : gaze.direction[side];
+    raw.rows.push_back(direction_row(gaze.t_ns, gaze.row, side, direction, gaze.pupil_mm[side]));
   }
   raw.origins.push_back({to_float(gaze.center_mm[0]), to_float(gaze.center_mm[1]), gaze.t_ns});
 }
@@ -104,22 +99,13 @@ void add_samples(const GazeOfIndex& gaze, RawGaze& raw) {
 }  // namespace
 
 double sniff_gaze_tobii_glasses2(const GazeFile& file) {
-  const std::string_view head = head_of(file, 4096);
-  const bool object = head.starts_with("{\"ts\"");
-  const auto has = [&](std::string_view name) { return head.find(name) != std::string_view::npos; };
+  const WordsIn has{head_of(file, 4096)};
   const bool known = has("\"gidx\"") || has("\"pts\"") || has("\"gp\"");
-  return object ? known ? 0.99 : 0.7 : 0.0;
+  return file.text.starts_with("{\"ts\"") ? known ? 0.99 : 0.7 : 0.0;
 }
 
 RawGaze read_gaze_tobii_glasses2(const GazeFile& file, const GazeReadOptions& options) {
-  RawGaze raw;
-  raw.way_out =
-      "`frame` head takes the directions of the eyes from the head; or map gaze onto the display "
-      "and export that";
-  raw.source = file.path;
-  raw.clock = "device";
-  raw.pupil_unit = "mm";
-  raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
+  RawGaze raw = raw_of_glasses(file, options, "device");
   const int exponent = declare_time(raw, options, "ts", 3, Evidence::format, file.path).exponent;
   std::map<std::int64_t, GazeOfIndex> gazes;
   for_each_json_line(file, raw.damages, [&](const JsonLeaves& json, std::int64_t row, const std::string& place) {
@@ -141,12 +127,7 @@ RawGaze read_gaze_tobii_glasses2(const GazeFile& file, const GazeReadOptions& op
     }
     add_samples(*gaze, raw);
   }
-  if (raw.kind == GazeKind::direction) {
-    declare_directions(raw, {"gd", Evidence::format, "of each eye"}, GazeAxes::sranipal, Evidence::format, file.path);
-  } else {
-    points.finish(raw, "gp3");
-    declare_places(raw, {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format, "gp"}, file.path);
-  }
+  declare_glasses(raw, file, "gd", "gp", "gp3", points);
   return raw;
 }
 

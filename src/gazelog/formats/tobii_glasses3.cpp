@@ -3,7 +3,6 @@
 // recording, `data` with gaze2d (fractions of the scene video from the top left) and for each eye gazeorigin (mm),
 // gazedirection and pupildiameter (mm). A lost sample has no data, and a lost eye has an empty object. Axes: +x to the
 // wearer's left, +y up, +z forward.
-#include <fmt/format.h>
 
 #include "gazelog/json_lines.hpp"
 
@@ -28,15 +27,9 @@ void add_line(const JsonLeaves& json, std::int64_t t_ns, std::int64_t row, RawGa
   Vec3f origins[2];
   for (std::size_t side = 0; side < 2; ++side) {
     const std::string eye = side == 0 ? "data.eyeleft." : "data.eyeright.";
-    RawSample sample = missing_row(t_ns, row, side == 0 ? Eye::left : Eye::right);
-    const Vec3d direction = json_vector(json, eye + "gazedirection");
-    if (length(direction) > 0) {
-      sample.at = direction;
-      sample.validity = GazeValidity::ok;
-    }
-    sample.pupil = static_cast<float>(json.number(eye + "pupildiameter").value_or(kNan));
+    raw.rows.push_back(direction_row(t_ns, row, side, json_vector(json, eye + "gazedirection"),
+                                     json.number(eye + "pupildiameter").value_or(kNan)));
     origins[side] = to_float(json_vector(json, eye + "gazeorigin"));
-    raw.rows.push_back(sample);
   }
   raw.origins.push_back({origins[0], origins[1], t_ns});
 }
@@ -44,23 +37,13 @@ void add_line(const JsonLeaves& json, std::int64_t t_ns, std::int64_t row, RawGa
 }  // namespace
 
 double sniff_gaze_tobii_glasses3(const GazeFile& file) {
-  const std::string_view head = head_of(file, 4096);
-  const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };
-  if (!head.starts_with("{\"type\":")) {
-    return 0.0;
-  }
-  return has("\"type\":\"gaze\"") && (has("gaze2d") || has("\"data\":{}")) ? 0.99 : 0.0;
+  const WordsIn has{head_of(file, 4096)};
+  const bool is_gaze = file.text.starts_with("{\"type\":") && has("\"type\":\"gaze\"");
+  return is_gaze && (has("gaze2d") || has("\"data\":{}")) ? 0.99 : 0.0;
 }
 
 RawGaze read_gaze_tobii_glasses3(const GazeFile& file, const GazeReadOptions& options) {
-  RawGaze raw;
-  raw.way_out =
-      "`frame` head takes the directions of the eyes from the head; or map gaze onto the display "
-      "and export that";
-  raw.source = file.path;
-  raw.clock = "recording, from its start";
-  raw.pupil_unit = "mm";
-  raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
+  RawGaze raw = raw_of_glasses(file, options, "recording, from its start");
   const int exponent = declare_time(raw, options, "timestamp", 9, Evidence::format, file.path).exponent;
   WitnessTally points;
   for_each_json_line(file, raw.damages, [&](const JsonLeaves& json, std::int64_t row, const std::string& place) {
@@ -73,13 +56,7 @@ RawGaze read_gaze_tobii_glasses3(const GazeFile& file, const GazeReadOptions& op
     }
     add_line(json, *t_ns, row, raw, points);
   });
-  if (raw.kind == GazeKind::direction) {
-    declare_directions(raw, {"gazedirection", Evidence::format, "of each eye"}, GazeAxes::sranipal, Evidence::format,
-                       file.path);
-  } else {
-    points.finish(raw, "gaze3d");
-    declare_places(raw, {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format, "gaze2d"}, file.path);
-  }
+  declare_glasses(raw, file, "gazedirection", "gaze2d", "gaze3d", points);
   return raw;
 }
 

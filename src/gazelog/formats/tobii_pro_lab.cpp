@@ -11,12 +11,9 @@
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
 #include "gazelog/recordings.hpp"
-#include "gazelog/validity.hpp"
 
 namespace gazetrace {
 namespace {
-
-using OptionalColumn = std::optional<std::size_t>;
 
 struct EyeInLab {
   Eye eye = Eye::cyclopean;
@@ -28,10 +25,9 @@ struct LabColumns {
   int time_exponent = 3;
   OptionalColumn sensor, event, movement, movement_index, width, height;
   std::vector<EyeInLab> eyes;
-  OptionalColumn picture_width, picture_height;            // of the scene camera's picture
-  std::array<std::array<OptionalColumn, 3>, 2> direction;  // of the left and the right eye, in the head
+  OptionalColumn picture_width, picture_height;  // of the scene camera's picture
+  std::array<VectorColumns, 2> direction;        // of the left and the right eye, in the head
   bool is_declared = false, is_glasses = false;
-  std::size_t needed = 0;
 };
 
 // "Gaze point X", "Gaze point X (DACSpx)", "Gaze point X [DACS px]": of the display, or bare.
@@ -59,15 +55,15 @@ bool has_prefix(const DelimitedTable& table, std::string_view prefix) {
                      [&](const ColumnHeading& heading) { return heading.text.starts_with(prefix); });
 }
 
-[[noreturn]] void no_gaze_points(const DelimitedTable& table, const std::string& place) {
+[[noreturn]] void no_gaze_points(const DelimitedTable& table) {
   if (has_prefix(table, "Gaze point X")) {
-    throw Error(ErrorKind::input, place,
+    throw Error(ErrorKind::input, table.place,
                 "its gaze points are in media coordinates (MCS), relative to what was shown, not to the display",
                 "export again with DACS columns, or name the columns with `x-column` and `y-column` and give "
                 "the size of the medium with `screen-px`");
   }
   const bool fixations = has_prefix(table, "Fixation point X") || has_prefix(table, "Mapped fixation X");
-  throw Error(ErrorKind::input, place,
+  throw Error(ErrorKind::input, table.place,
               fmt::format("this export has no gaze points (Gaze point X){}",
                           fixations ? ", only fixations, which leave out every saccade" : ""),
               "export again with gaze points, or name the columns to read as places with `x-column` and "
@@ -86,30 +82,23 @@ bool is_of_glasses(const GazeFile& file, const DelimitedTable& table) {
 }
 
 LabColumns find_columns(const GazeFile& file, const DelimitedTable& table, const GazeReadOptions& options,
-                        const std::string& place) {
+                        UsedColumns& used) {
   LabColumns c;
   c.is_glasses = is_of_glasses(file, table);
-  const auto keep = [&](OptionalColumn column) {
-    c.needed = std::max(c.needed, column ? *column + 1 : 0);
-    return column;
-  };
-  const auto time = table.find("Recording timestamp");
-  if (!time) {
-    throw Error(ErrorKind::input, place, "there is no column 'Recording timestamp'", "is this a Tobii Pro Lab export?");
-  }
-  c.time = time_column(table, options, *time, place);
+  const std::size_t own_time = UsedColumns(table).require("Recording timestamp", "is this a Tobii Pro Lab export?");
+  c.time = used.time(options, own_time);
   c.time_exponent = time_exponent(table.headings[c.time].unit).value_or(3);
-  c.sensor = keep(table.find("Sensor"));
-  c.event = keep(table.find("Event"));
-  c.movement = keep(table.find("Eye movement type"));
-  c.movement_index = keep(table.find("Eye movement type index"));
-  c.width = keep(table.find("Recording resolution width"));
-  c.height = keep(table.find("Recording resolution height"));
+  c.sensor = used.find("Sensor");
+  c.event = used.find("Event");
+  c.movement = used.find("Eye movement type");
+  c.movement_index = used.find("Eye movement type index");
+  c.width = used.find("Recording resolution width");
+  c.height = used.find("Recording resolution height");
   if (!options.columns.x.empty()) {
     c.is_declared = true;
     c.eyes.push_back({Eye::cyclopean,
-                      keep(declared_column(table, options.columns.x, place)),
-                      keep(declared_column(table, options.columns.y, place)),
+                      used.use(declared_column(table, options.columns.x)),
+                      used.use(declared_column(table, options.columns.y)),
                       {},
                       {}});
   } else {
@@ -121,30 +110,29 @@ LabColumns find_columns(const GazeFile& file, const DelimitedTable& table, const
                        {},
                        {}};
       if (columns.x && columns.y) {
-        keep(columns.x);
-        keep(columns.y);
+        used.use(columns.x);
+        used.use(columns.y);
         if (eye != Eye::cyclopean) {
-          columns.validity = keep(table.find(fmt::format("Validity {}", side)));
-          columns.pupil = keep(table.find(fmt::format("Pupil diameter {}", side)));
+          columns.validity = used.find(fmt::format("Validity {}", side));
+          columns.pupil = used.find(fmt::format("Pupil diameter {}", side));
         }
         c.eyes.push_back(columns);
       }
     }
   }
   if (c.is_glasses) {
-    c.picture_width = keep(table.find("Recording media width"));
-    c.picture_height = keep(table.find("Recording media height"));
+    c.picture_width = used.find("Recording media width");
+    c.picture_height = used.find("Recording media height");
     for (std::size_t eye = 0; eye < 2; ++eye) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         c.direction[eye][axis] =
-            keep(table.find(fmt::format("Gaze direction {} {} [HUCS norm]", eye == 0 ? "left" : "right", "XYZ"[axis])));
+            used.find(fmt::format("Gaze direction {} {} [HUCS norm]", eye == 0 ? "left" : "right", "XYZ"[axis]));
       }
     }
   }
   if (c.eyes.empty()) {
-    no_gaze_points(table, place);
+    no_gaze_points(table);
   }
-  c.needed = std::max(c.needed, c.time + 1);
   return c;
 }
 
@@ -160,14 +148,11 @@ double sniff_gaze_tobii_pro_lab(const GazeFile& file) {
 
 RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
-  const std::string place = place_of(file, table.header_line);
-  const LabColumns c = find_columns(file, table, options, place);
-  RawGaze raw;
-  raw.source = file.path;
-  raw.clock = "recording, from its start";
-  raw.pupil_unit = "mm";
-  const bool has_directions = c.direction[0][0] && c.direction[0][1] && c.direction[0][2] && c.direction[1][0] &&
-                              c.direction[1][1] && c.direction[1][2];
+  UsedColumns used(table);
+  const LabColumns c = find_columns(file, table, options, used);
+  RawGaze raw = raw_of(file, "recording, from its start", "mm");
+  const auto is_there = [](const VectorColumns& columns) { return columns[0] && columns[1] && columns[2]; };
+  const bool has_directions = is_there(c.direction[0]) && is_there(c.direction[1]);
   const bool takes_directions = c.is_glasses && options.frame == GazeFrame::head && has_directions;
   if (takes_directions) {
     raw.kind = GazeKind::direction;
@@ -180,11 +165,11 @@ RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
   }
   const bool unit_stated = !table.headings[c.time].unit.empty();
   const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, c.time_exponent,
-                                       unit_stated ? Evidence::header : Evidence::format, place);
+                                       unit_stated ? Evidence::header : Evidence::format, table.place);
   RecordingColumns recordings(table, options.columns.recording, {"Participant name", "Recording name"});
   LabelRuns runs;
   std::size_t others = 0;
-  TableRows rows(file, table, std::max(c.needed, recordings.needed_cells()));
+  TableRows rows(file, table, std::max(used.needed(), recordings.needed_cells()));
   while (rows.next()) {
     rows.check_length();
     if (recordings.note(rows, raw)) {
@@ -210,8 +195,7 @@ RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
     }
     for (std::size_t eye = 0; takes_directions && eye < 2; ++eye) {
       RawSample sample = missing_row(t_ns, rows.line(), eye == 0 ? Eye::left : Eye::right);
-      const auto& d = c.direction[eye];
-      sample.at = {rows.number(d[0]), rows.number(d[1]), rows.number(d[2])};
+      sample.at = rows.vector(c.direction[eye]);
       sample.validity = length(sample.at) > 0 ? GazeValidity::ok : GazeValidity::lost;
       raw.rows.push_back(sample);
     }
@@ -234,7 +218,7 @@ RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
   }
   if (takes_directions) {
     declare_directions(raw, {"Gaze direction left X, ...", Evidence::header}, GazeAxes::sranipal, Evidence::format,
-                       place);
+                       table.place);
     return raw;
   }
   const std::string columns = table.headings[*c.eyes.front().x].text + ", " + table.headings[*c.eyes.front().y].text;
@@ -242,7 +226,7 @@ RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
   declare_places(raw,
                  {is_norm && c.is_glasses ? PositionUnit::fraction : PositionUnit::px, PositionOrigin::top_left,
                   Evidence::format, columns},
-                 place);
+                 table.place);
   return raw;
 }
 

@@ -3,16 +3,14 @@
 // microseconds, gaze points as fractions of the active display area from the top left, in columns ..._x and ..._y or,
 // as Python writes them, as a pair in one cell, "(0.5, 0.3)", which has been divided. Lost samples are NaN with
 // validity 0.
-#include <fmt/format.h>
 
 #include "gazelog/mapped_table.hpp"
 
 namespace gazetrace {
 
 double sniff_gaze_tobii_sdk(const GazeFile& file) {
-  const std::string_view head = head_of(file, 4096);
-  const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };
-  if (!has("gaze_point_on_display_area") || head.starts_with('{') || head.starts_with('[')) {
+  const WordsIn has{head_of(file, 4096)};
+  if (!has("gaze_point_on_display_area") || file.text.starts_with('{') || file.text.starts_with('[')) {
     return 0.0;
   }
   return has("device_time_stamp") || has("system_time_stamp") ? 0.98 : 0.5;

@@ -18,59 +18,47 @@ namespace {
 
 constexpr double kWorstValidity = 1;  // with 0 and 1 this eye was found, and it is certain which eye it is
 
-struct StudioColumns {
-  std::size_t time = 0;
-  std::optional<std::size_t> x, y, left_x, left_y, right_x, right_y, left_validity, right_validity, left_pupil,
-      right_pupil, left_distance, right_distance, left_x_mm, left_y_mm, event_type, fixation, saccade;
-  std::array<std::array<std::optional<std::size_t>, 3>, 2> eye_mm;  // places of the left and right eye
-  std::vector<std::size_t> events;                                  // columns with the texts of events
-  std::size_t needed = 0;
+struct StudioEye {
+  OptionalColumn x, y, validity = {}, pupil = {}, distance = {};
+  VectorColumns place_mm = {};
 };
 
-StudioColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, const std::string& place) {
+struct StudioColumns {
+  std::size_t time = 0;
+  OptionalColumn x, y, left_x_mm, left_y_mm, event_type, fixation, saccade;
+  std::array<StudioEye, 2> eyes;    // left, right
+  std::vector<std::size_t> events;  // columns with the texts of events
+};
+
+StudioColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, UsedColumns& used) {
   StudioColumns c;
-  const auto own = [&](std::string_view name) {
-    const auto found = table.find(name);
-    c.needed = std::max(c.needed, found ? *found + 1 : 0);
-    return found;
-  };
-  const auto time = own("RecordingTimestamp");
-  if (!time) {
-    throw Error(ErrorKind::input, place, "there is no column 'RecordingTimestamp'", "is this a Tobii Studio export?");
-  }
-  c.time = time_column(table, options, *time, place);
-  c.x = own("GazePointX (ADCSpx)");
-  c.y = own("GazePointY (ADCSpx)");
-  c.left_x = own("GazePointLeftX (ADCSpx)");
-  c.left_y = own("GazePointLeftY (ADCSpx)");
-  c.right_x = own("GazePointRightX (ADCSpx)");
-  c.right_y = own("GazePointRightY (ADCSpx)");
-  c.left_validity = own("ValidityLeft");
-  c.right_validity = own("ValidityRight");
-  c.left_pupil = own("PupilLeft");
-  c.right_pupil = own("PupilRight");
-  c.left_distance = own("DistanceLeft");
-  c.right_distance = own("DistanceRight");
-  c.left_x_mm = own("GazePointLeftX (ADCSmm)");
-  c.left_y_mm = own("GazePointLeftY (ADCSmm)");
+  c.time = used.time(options, used.require("RecordingTimestamp", "is this a Tobii Studio export?"));
+  c.x = used.find("GazePointX (ADCSpx)");
+  c.y = used.find("GazePointY (ADCSpx)");
   for (std::size_t eye = 0; eye < 2; ++eye) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      c.eye_mm[eye][axis] = own(fmt::format("EyePos{}{} (ADCSmm)", eye == 0 ? "Left" : "Right", "XYZ"[axis]));
-    }
+    const char* const side = eye == 0 ? "Left" : "Right";
+    const auto find = [&](fmt::format_string<const char* const&> name) { return used.find(fmt::format(name, side)); };
+    c.eyes[eye] = {find("GazePoint{}X (ADCSpx)"),
+                   find("GazePoint{}Y (ADCSpx)"),
+                   find("Validity{}"),
+                   find("Pupil{}"),
+                   find("Distance{}"),
+                   {find("EyePos{}X (ADCSmm)"), find("EyePos{}Y (ADCSmm)"), find("EyePos{}Z (ADCSmm)")}};
   }
-  c.event_type = own("GazeEventType");
-  c.fixation = own("FixationIndex");
-  c.saccade = own("SaccadeIndex");
+  c.left_x_mm = used.find("GazePointLeftX (ADCSmm)");
+  c.left_y_mm = used.find("GazePointLeftY (ADCSmm)");
+  c.event_type = used.find("GazeEventType");
+  c.fixation = used.find("FixationIndex");
+  c.saccade = used.find("SaccadeIndex");
   for (const std::string_view name : {"StudioEvent", "MouseEvent", "KeyPressEvent", "ExternalEvent"}) {
-    if (const auto found = own(name)) {
+    if (const auto found = used.find(name)) {
       c.events.push_back(*found);
     }
   }
-  if ((!c.x || !c.y) && (!c.left_x || !c.left_y) && (!c.right_x || !c.right_y)) {
-    throw Error(ErrorKind::input, place, "there is no gaze in pixels of the display (GazePointX (ADCSpx))",
+  if ((!c.x || !c.y) && (!c.eyes[0].x || !c.eyes[0].y) && (!c.eyes[1].x || !c.eyes[1].y)) {
+    throw Error(ErrorKind::input, table.place, "there is no gaze in pixels of the display (GazePointX (ADCSpx))",
                 "media coordinates (MCSpx) are relative to what was shown; export again with ADCS columns");
   }
-  c.needed = std::max(c.needed, c.time + 1);
   return c;
 }
 
@@ -100,17 +88,15 @@ class StudioReader {
   StudioReader(const GazeFile& file, const GazeReadOptions& options)
       : options_(options),
         table_(open_table(file)),
-        place_(place_of(file, table_.header_line)),
-        c_(find_columns(table_, options, place_)),
+        used_(table_),
+        c_(find_columns(table_, options, used_)),
         recordings_(table_, options.columns.recording, {"ParticipantName", "RecordingName"}),
-        rows_(file, table_, std::max(c_.needed, recordings_.needed_cells())) {
-    raw_.source = file.path;
-    raw_.clock = "recording, from its start";
-    raw_.pupil_unit = "mm";
+        rows_(file, table_, std::max(used_.needed(), recordings_.needed_cells())),
+        raw_(raw_of(file, "recording, from its start", "mm")) {
     const std::string& time = table_.headings[c_.time].text;
     // EyeTrackerTimestamp is in microseconds.
     const int stated = to_lower(time).find("eyetracker") == std::string::npos ? 6 : 3;
-    scale_ = declare_time(raw_, options, time, stated, Evidence::format, place_);
+    scale_ = declare_time(raw_, options, time, stated, Evidence::format, table_.place);
   }
 
   RawGaze read() {
@@ -145,8 +131,9 @@ class StudioReader {
       happened += text.empty() ? "" : (happened.empty() ? "" : "; ") + std::string(text);
     }
     // Rows of events have no gaze and no validity, and no stamp of the tracker either.
-    const bool is_sample = !rows_.cell(c_.left_validity).empty() || !rows_.cell(c_.right_validity).empty() ||
-                           (!c_.left_validity && !c_.right_validity && happened.empty());
+    const auto& [left, right] = c_.eyes;
+    const bool is_sample = !rows_.cell(left.validity).empty() || !rows_.cell(right.validity).empty() ||
+                           (!left.validity && !right.validity && happened.empty());
     if (!is_sample && rows_.cell(c_.time).empty()) {
       return;
     }
@@ -157,26 +144,15 @@ class StudioReader {
     if (!is_sample) {
       return;
     }
-    if (c_.x && c_.y) {
-      add(t_ns, Eye::cyclopean, *c_.x, *c_.y, kNan, kNan);
+    add(t_ns, Eye::cyclopean, {.x = c_.x, .y = c_.y});
+    add(t_ns, Eye::left, left);
+    if (left.x && left.y && c_.left_x_mm && c_.left_y_mm) {
+      const Vec2d mm{rows_.number(c_.left_x_mm), rows_.number(c_.left_y_mm)};
+      width_.add(rows_.number(options_.swap_xy ? left.y : left.x), mm.x);
+      height_.add(rows_.number(options_.swap_xy ? left.x : left.y), mm.y);
+      millimetres_.add(rows_.number(left.x), rows_.number(left.y), mm.x, -mm.y);
     }
-    if (c_.left_x && c_.left_y) {
-      add(t_ns, Eye::left, *c_.left_x, *c_.left_y, rows_.number(c_.left_validity), rows_.number(c_.left_pupil));
-      if (c_.left_x_mm && c_.left_y_mm) {
-        width_.add(rows_.number(options_.swap_xy ? *c_.left_y : *c_.left_x), rows_.number(*c_.left_x_mm));
-        height_.add(rows_.number(options_.swap_xy ? *c_.left_x : *c_.left_y), rows_.number(*c_.left_y_mm));
-        millimetres_.add(rows_.number(*c_.left_x), rows_.number(*c_.left_y), rows_.number(*c_.left_x_mm),
-                         -rows_.number(*c_.left_y_mm));
-      }
-    }
-    if (c_.right_x && c_.right_y) {
-      add(t_ns, Eye::right, *c_.right_x, *c_.right_y, rows_.number(c_.right_validity), rows_.number(c_.right_pupil));
-    }
-    for (const auto& column : {c_.left_distance, c_.right_distance}) {
-      if (const double distance = rows_.number(column); distance > 0) {
-        distances_mm_.push_back(distance);
-      }
-    }
+    add(t_ns, Eye::right, right);
     read_eye_places();
     const std::string type(rows_.cell(c_.event_type));
     runs_.add_named(type, Eye::cyclopean, rows_.cell(type == "Fixation" ? c_.fixation : c_.saccade), t_ns,
@@ -188,8 +164,11 @@ class StudioReader {
   void read_eye_places() {
     Vec3d sum;
     double eyes = 0;
-    for (const auto& columns : c_.eye_mm) {
-      const Vec3d at{rows_.number(columns[0]), rows_.number(columns[1]), rows_.number(columns[2])};
+    for (const StudioEye& eye : c_.eyes) {
+      if (const double distance = rows_.number(eye.distance); distance > 0) {
+        distances_mm_.push_back(distance);
+      }
+      const Vec3d at = rows_.vector(eye.place_mm);
       if (is_finite(at) && at.z > 0) {
         sum += at;
         ++eyes;
@@ -202,8 +181,13 @@ class StudioReader {
     }
   }
 
-  void add(std::int64_t t_ns, Eye eye, std::size_t x, std::size_t y, double validity, double pupil) {
-    RawSample sample = position_row(t_ns, rows_.line(), eye, {rows_.number(x), rows_.number(y)}, pupil);
+  void add(std::int64_t t_ns, Eye eye, const StudioEye& columns) {
+    if (!columns.x || !columns.y) {
+      return;
+    }
+    const double validity = rows_.number(columns.validity);
+    RawSample sample = position_row(t_ns, rows_.line(), eye, {rows_.number(columns.x), rows_.number(columns.y)},
+                                    rows_.number(columns.pupil));
     if (sample.validity == GazeValidity::ok && validity > kWorstValidity) {
       sample.validity = validity >= 4 ? GazeValidity::lost : GazeValidity::low_confidence;
     }
@@ -245,12 +229,12 @@ class StudioReader {
     declare_places(raw_,
                    {PositionUnit::px, PositionOrigin::top_left, Evidence::header,
                     c_.x ? "GazePointX (ADCSpx), GazePointY (ADCSpx)" : "GazePointLeftX (ADCSpx), ..."},
-                   place_);
+                   table_.place);
   }
 
   const GazeReadOptions& options_;
   DelimitedTable table_;
-  std::string place_;
+  UsedColumns used_;
   StudioColumns c_;
   RecordingColumns recordings_;
   TableRows rows_;

@@ -28,7 +28,7 @@ RawGaze read_gaze_varjo(const GazeFile& file, const GazeReadOptions& options) {
     c.time = if_there("relative_to_video_first_frame_timestamp");
   }
   if (c.time.empty() && options.columns.time.empty()) {
-    throw Error(ErrorKind::input, place_of(file, table.header_line), "there is no column raw_timestamp",
+    throw Error(ErrorKind::input, table.place, "there is no column raw_timestamp",
                 "older exports have other times: name one with `time-column` and `time-unit`");
   }
   c.time_unit = TimeUnit::ns;
@@ -55,10 +55,8 @@ RawGaze read_gaze_varjo(const GazeFile& file, const GazeReadOptions& options) {
   }
   c.origin_mm_per_unit = 1000;
   if (is_unity && table.find("HMDPosition_x") && table.find("HMDRotation_w")) {
-    std::tie(c.head_x, c.head_y, c.head_z) = xyz("HMDPosition_");
-    std::tie(c.head_rotation_x, c.head_rotation_y, c.head_rotation_z) = xyz("HMDRotation_");
+    take_unity_head(c, "HMDPosition_", "HMDRotation_");
     c.head_rotation_w = "HMDRotation_w";
-    c.head_axes = GazeAxes::unity;
   }
   c.axes = GazeAxes::unity;
   return read_preset(file, table, options, c);

@@ -6,9 +6,13 @@
 #include "gazelog/mapped_table.hpp"
 
 namespace gazetrace {
-namespace {
 
-GazeColumns preset() {
+double sniff_gaze_vive(const GazeFile& file) {
+  const WordsIn has{first_line_of(file)};
+  return has("gaze_direct_L.x") && has("eye_valid_L") ? has("helmet_rot_x") && has("time(100ns)") ? 0.97 : 0.5 : 0.0;
+}
+
+RawGaze read_gaze_vive(const GazeFile& file, const GazeReadOptions& options) {
   GazeColumns c;
   c.time = "time(100ns)";
   for (auto* const eye : {&c.left, &c.right}) {
@@ -21,22 +25,9 @@ GazeColumns preset() {
   }
   c.valid_mask = 2;
   c.frame = "frame";
-  std::tie(c.head_x, c.head_y, c.head_z) = xyz("helmet_pos_");
-  std::tie(c.head_rotation_x, c.head_rotation_y, c.head_rotation_z) = xyz("helmet_rot_");
+  take_unity_head(c, "helmet_pos_", "helmet_rot_");
   c.axes = GazeAxes::sranipal;
-  c.head_axes = GazeAxes::unity;
-  return c;
-}
-
-}  // namespace
-
-double sniff_gaze_vive(const GazeFile& file) {
-  const WordsIn has{first_line_of(file)};
-  return has("gaze_direct_L.x") && has("eye_valid_L") ? has("helmet_rot_x") && has("time(100ns)") ? 0.97 : 0.5 : 0.0;
-}
-
-RawGaze read_gaze_vive(const GazeFile& file, const GazeReadOptions& options) {
-  RawGaze raw = read_preset(file, open_table(file), options, preset());
+  RawGaze raw = read_preset(file, open_table(file), options, c);
   raw.declared.x_is_turned.emplace();  // some loggers turn it, which the eyes' origins show
   return raw;
 }

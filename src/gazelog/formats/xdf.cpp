@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <pugixml.hpp>
 
 #include "core/text.hpp"
@@ -32,9 +31,14 @@ struct GazeChannels {
   bool is_direction = false, is_scene_camera = false, is_point = false;
 };
 
-void read_header(XdfStream& stream) {
+pugi::xml_document header_of(const XdfStream& stream) {
   pugi::xml_document xml;
   xml.load_buffer(stream.header.data(), stream.header.size());
+  return xml;
+}
+
+void read_header(XdfStream& stream) {
+  const pugi::xml_document xml = header_of(stream);
   const pugi::xml_node info = xml.child("info");
   const unsigned channels = info.child("channel_count").text().as_uint();
   stream.channels = channels < 100'000 ? channels : 0;
@@ -44,8 +48,7 @@ void read_header(XdfStream& stream) {
 }
 
 std::vector<Channel> channels_of(const XdfStream& stream, const std::string& path) {
-  pugi::xml_document xml;
-  xml.load_buffer(stream.header.data(), stream.header.size());
+  const pugi::xml_document xml = header_of(stream);
   std::vector<Channel> channels;
   for (const pugi::xml_node node : xml.child("info").child("desc").child("channels").children("channel")) {
     Channel channel{node.child("label").text().as_string(), node.child("unit").text().as_string(),
@@ -67,8 +70,7 @@ std::vector<Channel> channels_of(const XdfStream& stream, const std::string& pat
 }
 
 bool is_gaze(const XdfStream& stream) {
-  pugi::xml_document xml;
-  xml.load_buffer(stream.header.data(), stream.header.size());
+  const pugi::xml_document xml = header_of(stream);
   const std::string type = letters_and_digits(xml.child("info").child("type").text().as_string());
   return type == "gaze" || type == "eyetracker" || type == "eyetracking";
 }
@@ -286,9 +288,7 @@ double sniff_gaze_xdf(const GazeFile& file) {
 }
 
 RawGaze read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
-  RawGaze raw;
-  raw.source = file.path;
-  raw.clock = "LSL";
+  RawGaze raw = raw_of(file, "LSL");
   const std::vector<XdfStream> streams = read_xdf(file.text, file.path, raw.damages, read_header);
   const std::vector<const XdfStream*> all = gaze_streams(streams, file.path);
   const XdfStream& stream = *all.front();

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "gaze/process/one_euro_filter.hpp"
+#include "gaze/process/gaze_step.hpp"
 #include "gazetrace/gaze_events.hpp"
 #include "gazetrace/gaze_process.hpp"
 #include "gazetrace/gaze_synth.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "gazelog/scene_lens.hpp"
+#include "gazelog/row_samples.hpp"
 #include "support/gaze_format_files.hpp"
 
 namespace gazetrace::gaze_formats_head_test {

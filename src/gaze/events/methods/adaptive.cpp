@@ -160,8 +160,7 @@ void find_saccades(const GazeDirections& gaze, const std::vector<double>& speed,
       ++end;
     }
     if (gaze.t_ns[end] - gaze.t_ns[begin] >= settings.min_saccade_ns) {
-      std::fill(events.labels.begin() + static_cast<std::ptrdiff_t>(begin),
-                events.labels.begin() + static_cast<std::ptrdiff_t>(end) + 1, EyeMovement::saccade);
+      label_samples(events.labels, begin, end + 1, EyeMovement::saccade);
     }
     i = end;
   }
@@ -192,7 +191,7 @@ void classify_adaptive(const GazeDirections& gaze, EyeEvents& events) {
       events.labels[i] = EyeMovement::fixation;
     }
   }
-  drop_short_fixations(gaze, events);
+  drop_short(EyeMovement::fixation, gaze, events);
 }
 
 }  // namespace gazetrace

@@ -14,8 +14,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
+#include "core/nan.hpp"
 #include "core/statistics.hpp"
 #include "gaze/angles.hpp"
 #include "gaze/events/event_method.hpp"
@@ -29,8 +29,7 @@ constexpr std::size_t kLeastSamples = 3;
 
 // Degrees per second to the right and up; NaN where not known.
 std::vector<Vec2d> velocities(const GazeDirections& gaze, const std::vector<LabelRun>& runs) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  std::vector<Vec2d> velocity(gaze.t_ns.size(), Vec2d{nan, nan});
+  std::vector<Vec2d> velocity(gaze.t_ns.size(), Vec2d{kNan, kNan});
   for (const LabelRun& run : runs) {
     if (run.movement != EyeMovement::unclassified) {
       continue;
@@ -57,10 +56,6 @@ std::vector<Vec2d> velocities(const GazeDirections& gaze, const std::vector<Labe
   return velocity;
 }
 
-double median_of(std::vector<double> values) {
-  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : upper_median(values);
-}
-
 double spread_by_medians(const std::vector<Vec2d>& velocity, double Vec2d::*component) {
   std::vector<double> plain;
   std::vector<double> squared;
@@ -70,8 +65,8 @@ double spread_by_medians(const std::vector<Vec2d>& velocity, double Vec2d::*comp
       squared.push_back(v.*component * (v.*component));
     }
   }
-  const double middle = median_of(std::move(plain));
-  return std::sqrt(std::max(median_of(std::move(squared)) - middle * middle, 0.0));
+  const double middle = upper_median(plain);
+  return std::sqrt(std::max(upper_median(squared) - middle * middle, 0.0));
 }
 
 double extent_deg(const GazeDirections& gaze, std::size_t first, std::size_t last) {
@@ -130,12 +125,11 @@ void classify_ek(const GazeDirections& gaze, EyeEvents& events) {
                                                                                 : EyeMovement::saccade;
       }
       end = std::max(end, i + 1);
-      std::fill(events.labels.begin() + static_cast<std::ptrdiff_t>(i),
-                events.labels.begin() + static_cast<std::ptrdiff_t>(end), movement);
+      label_samples(events.labels, i, end, movement);
       i = end - 1;
     }
   }
-  drop_short_fixations(gaze, events);
+  drop_short(EyeMovement::fixation, gaze, events);
 }
 
 }  // namespace gazetrace

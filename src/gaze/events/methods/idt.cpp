@@ -2,10 +2,8 @@
 // I-DT: a window of the shortest fixation's length slides until the gaze stays within D in it, and then grows as long
 // as it does; D = (max x - min x) + (max y - min y). Gaze that was seen outside such windows counts as saccade.
 // Salvucci & Goldberg, "Identifying fixations and saccades in eye-tracking protocols", 2000.
-#include <algorithm>
 #include <cstddef>
 
-#include "gaze/angles.hpp"
 #include "gaze/events/dispersion_window.hpp"
 #include "gaze/events/event_method.hpp"
 
@@ -20,33 +18,12 @@ void classify_idt(const GazeDirections& gaze, EyeEvents& events) {
       continue;
     }
     const std::size_t end = run.last + 1;
-    std::fill(labels.begin() + static_cast<std::ptrdiff_t>(run.first),
-              labels.begin() + static_cast<std::ptrdiff_t>(end), EyeMovement::saccade);
-    window.start(run.first);
-    for (std::size_t begin = run.first; begin < end;) {
-      while (window.end() < end &&
-             (window.end() == begin || gaze.t_ns[window.end() - 1] - gaze.t_ns[begin] < settings.min_fixation_ns)) {
-        window.push();
-      }
-      if (gaze.t_ns[window.end() - 1] - gaze.t_ns[begin] < settings.min_fixation_ns) {
-        break;
-      }
-      if (window.dispersion_deg() > settings.dispersion_deg) {
-        window.pop();
-        ++begin;
-        continue;
-      }
-      while (window.end() < end && window.dispersion_with_next_deg() <= settings.dispersion_deg) {
-        window.push();
-      }
-      std::fill(labels.begin() + static_cast<std::ptrdiff_t>(begin),
-                labels.begin() + static_cast<std::ptrdiff_t>(window.end()), EyeMovement::fixation);
-      begin = window.end();
-      events.cuts.push_back(begin);  // the next fixation may begin directly here
-      if (begin < end) {
-        window.start(begin);
-      }
-    }
+    label_samples(labels, run.first, end, EyeMovement::saccade);
+    find_still(gaze, run.first, end, settings.min_fixation_ns, settings.dispersion_deg, window,
+               [&](std::size_t begin, std::size_t still_end) {
+                 label_samples(labels, begin, still_end, EyeMovement::fixation);
+                 events.cuts.push_back(still_end);  // the next fixation may begin directly here
+               });
   }
 }
 

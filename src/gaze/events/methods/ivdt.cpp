@@ -14,7 +14,6 @@
 // reach over a saccade or a loss. Samples too close to the end of such a stretch to fill a window are what the sample
 // before them is; in a stretch shorter than the window, the dispersion of all of it decides. Fixations and pursuits
 // shorter than EventSettings::min_fixation_ns are dropped.
-#include <algorithm>
 #include <cstddef>
 
 #include "gaze/angles.hpp"
@@ -26,52 +25,18 @@ namespace {
 
 void split_stretch(const GazeDirections& gaze, std::size_t first, std::size_t end, EyeEvents& events) {
   const EventSettings& settings = events.settings;
-  const auto label = [&](std::size_t from, std::size_t to, EyeMovement movement) {
-    std::fill(events.labels.begin() + static_cast<std::ptrdiff_t>(from),
-              events.labels.begin() + static_cast<std::ptrdiff_t>(to), movement);
-  };
-  label(first, end, EyeMovement::pursuit);
+  label_samples(events.labels, first, end, EyeMovement::pursuit);
   DispersionWindow window(gaze.direction);
-  window.start(first);
-  for (std::size_t begin = first; begin < end;) {
-    const auto is_filled = [&] {
-      return window.end() > begin && gaze.t_ns[window.end() - 1] - gaze.t_ns[begin] >= settings.dispersion_window_ns;
-    };
-    while (window.end() < end && !is_filled()) {
-      window.push();
-    }
-    if (!is_filled()) {
-      const bool follows_fixation = begin > first && events.labels[begin - 1] == EyeMovement::fixation;
-      const bool is_alone = begin == first && window.dispersion_deg() <= settings.dispersion_deg;
-      if (follows_fixation || is_alone) {
-        label(begin, end, EyeMovement::fixation);
-      }
-      return;
-    }
-    if (window.dispersion_deg() > settings.dispersion_deg) {
-      window.pop();
-      ++begin;
-      continue;
-    }
-    while (window.end() < end && window.dispersion_with_next_deg() <= settings.dispersion_deg) {
-      window.push();
-    }
-    label(begin, window.end(), EyeMovement::fixation);
-    begin = window.end();
-    if (begin < end) {
-      window.start(begin);
-    }
-  }
-}
-
-// A pursuit as short as a fixation that is not kept is the flank of a saccade.
-void drop_short_pursuits(const GazeDirections& gaze, EyeEvents& events) {
-  const std::int64_t step_ns = median_step_ns(gaze.t_ns);
-  for (const LabelRun& run : label_runs(events.labels, gaze.t_ns)) {
-    if (run.movement == EyeMovement::pursuit &&
-        gaze.t_ns[run.last] - gaze.t_ns[run.first] + step_ns < events.settings.min_fixation_ns) {
-      std::fill(events.labels.begin() + static_cast<std::ptrdiff_t>(run.first),
-                events.labels.begin() + static_cast<std::ptrdiff_t>(run.last) + 1, EyeMovement::unclassified);
+  const auto fixate = [&](std::size_t from, std::size_t to) {
+    label_samples(events.labels, from, to, EyeMovement::fixation);
+  };
+  const std::size_t rest =
+      find_still(gaze, first, end, settings.dispersion_window_ns, settings.dispersion_deg, window, fixate);
+  if (rest < end) {
+    const bool follows_fixation = rest > first && events.labels[rest - 1] == EyeMovement::fixation;
+    const bool is_alone = rest == first && window.dispersion_deg() <= settings.dispersion_deg;
+    if (follows_fixation || is_alone) {
+      fixate(rest, end);
     }
   }
 }
@@ -90,8 +55,9 @@ void classify_ivdt(const GazeDirections& gaze, EyeEvents& events) {
       split_stretch(gaze, run.first, run.last + 1, events);
     }
   }
-  drop_short_fixations(gaze, events);
-  drop_short_pursuits(gaze, events);
+  drop_short(EyeMovement::fixation, gaze, events);
+  // A pursuit as short as a fixation that is not kept is the flank of a saccade.
+  drop_short(EyeMovement::pursuit, gaze, events);
 }
 
 }  // namespace gazetrace

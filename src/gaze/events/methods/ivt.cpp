@@ -93,7 +93,7 @@ void classify_ivt(const GazeDirections& gaze, EyeEvents& events) {
   // come to an end, because every merging leaves fewer runs than there were.
   while (events.settings.merge_gap_ns > 0 && merge_neighbours(filled, events)) {
   }
-  drop_short_fixations(gaze, events);
+  drop_short(EyeMovement::fixation, gaze, events);
 }
 
 }  // namespace gazetrace

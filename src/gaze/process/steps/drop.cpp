@@ -3,7 +3,6 @@
 // share.
 #include <fmt/format.h>
 
-#include "gaze/counter_random.hpp"
 #include "gaze/process/gaze_step.hpp"
 
 namespace gazetrace {

@@ -5,45 +5,19 @@
 // made a saccade in the gap, which must not be interpolated across.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "gaze/process/gaze_step.hpp"
 #include "gazetrace/gaze_events.hpp"
 
 namespace gazetrace {
-namespace {
-
-// Whether the log names an event of the kind within [begin, end].
-class NamedEvents {
- public:
-  explicit NamedEvents(const GazeLog& log) {
-    for (const GazeEvent& event : log.events) {
-      if (event.type == GazeEventType::blink || event.type == GazeEventType::saccade) {
-        events_.push_back(&event);
-      }
-    }
-    std::sort(events_.begin(), events_.end(),
-              [](const GazeEvent* a, const GazeEvent* b) { return a->begin_ns < b->begin_ns; });
-  }
-  // To be asked with increasing times.
-  [[nodiscard]] const GazeEvent* within(std::int64_t begin_ns, std::int64_t end_ns) {
-    while (at_ < events_.size() && events_[at_]->end_ns <= begin_ns) {
-      ++at_;
-    }
-    return at_ < events_.size() && events_[at_]->begin_ns < end_ns ? events_[at_] : nullptr;
-  }
-
- private:
-  std::vector<const GazeEvent*> events_;
-  std::size_t at_ = 0;
-};
-
-}  // namespace
 
 std::string apply_fill_gaps(GazeLog& log, const GazeStep& step) {
   const GazeDirections gaze = gaze_directions(log);
   const std::int64_t max_ns = step.duration_ns("max");
-  NamedEvents named(log);
+  // What the log calls a blink or a saccade; asked with increasing times.
+  const std::vector<const GazeEvent*> named = events_in_time(log, [](const GazeEvent& event) {
+    return event.type == GazeEventType::blink || event.type == GazeEventType::saccade;
+  });
+  auto next = named.begin();
   std::size_t filled = 0;
   std::size_t samples = 0;
   std::size_t longer = 0;
@@ -64,7 +38,10 @@ std::string apply_fill_gaps(GazeLog& log, const GazeStep& step) {
     }
     const GazeSample before = log.samples[i - 1];
     const GazeSample& after = log.samples[end];
-    const GazeEvent* const event = named.within(before.t_ns, after.t_ns);
+    while (next != named.end() && (*next)->end_ns <= before.t_ns) {
+      ++next;
+    }
+    const GazeEvent* const event = next != named.end() && (*next)->begin_ns < after.t_ns ? *next : nullptr;
     blink = blink || (event != nullptr && event->type == GazeEventType::blink);
     const bool saccade =
         event != nullptr ||

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Imprecision: independent normal errors in azimuth and elevation around the gaze. They depend only on the seed and on
 // a sample's time, so that a part of a log gets the same errors as the whole.
-#include "gaze/counter_random.hpp"
 #include "gaze/process/gaze_step.hpp"
 #include "gazetrace/gaze_events.hpp"
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "gaze/process/gaze_step.hpp"
-#include "gaze/process/one_euro_filter.hpp"
 #include "gazetrace/gaze_events.hpp"
 
 namespace gazetrace {

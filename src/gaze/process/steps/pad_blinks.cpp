@@ -3,7 +3,7 @@
 // are those that the log names, and losses of 50 to 500 ms.
 #include <fmt/format.h>
 
-#include "gaze/events/absence.hpp"
+#include "gaze/events/event_method.hpp"
 #include "gaze/process/gaze_step.hpp"
 
 namespace gazetrace {

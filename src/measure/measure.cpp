@@ -3,16 +3,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
 
 #include "core/nan.hpp"
 #include "gaze/inspect/inspect.hpp"
-#include "gaze/measure/measurements_json.hpp"
 #include "gazetrace/gaze_event_check.hpp"
 #include "gazetrace/gaze_event_durations.hpp"
 #include "gazetrace/gaze_trials.hpp"
+#include "measure/measurements_json.hpp"
 
 namespace gazetrace {
 namespace {

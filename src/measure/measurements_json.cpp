@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gaze/measure/measurements_json.hpp"
+#include "measure/measurements_json.hpp"
 
 #include <fmt/format.h>
 
