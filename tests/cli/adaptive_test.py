@@ -209,7 +209,8 @@ class Adaptive(harness.CliTest):
         self.write("glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1.0)))
         gaze = ["--gaze-at", "0.5,0.5", "--screen-px", "96,60", "--screen-ppd", "12"]
         view = ["render", "glide.gltf", "--size", "96x60", *gaze, "--fps", "24", "--quiet"]
-        self.run_ok(*view, "--sampling", "uniform", "--filter", "none", "--spp", "1024", "--seed", "9", "-o", "reference/f.####.exr")
+        # Against 1024 samples a pixel the clips score by 0.0003 and 0.005 JOD otherwise.
+        self.run_ok(*view, "--sampling", "uniform", "--filter", "none", "--spp", "256", "--seed", "9", "-o", "reference/f.####.exr")
         frames = len(self.pictures("reference"))
         # In frames as small as these, the pilots that `adaptive` makes of each are more than the quality takes.
         for sampling, filter_name in (("uniform", "none"), ("uniform", "guided")):
