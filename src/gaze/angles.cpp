@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gaze/angles.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/nan.hpp"
@@ -61,8 +63,10 @@ GazeDirections gaze_directions(const GazeLog& log, GazeSpace space) {
   }
   const ScreenAngles screen(log);
   if (log.kind == GazeKind::screen && !screen.known()) {
+    const bool states_px = log.recording_geometry && log.recording_geometry->width_px > 0;
     throw Error(ErrorKind::input, log.source, "gaze on a screen means no angle without the screen's size and distance",
-                "give `screen` NAME, or `screen-px` W,H `screen-cm` W,H `screen-distance-cm` D");
+                fmt::format("give `screen` NAME, or {}`screen-cm` W,H `screen-distance-cm` D",
+                            states_px ? "" : "`screen-px` W,H "));
   }
   if (space == GazeSpace::world && log.head.empty()) {
     throw Error(ErrorKind::input, log.source, "gaze in the world needs the head's pose, and the log has none",

@@ -139,6 +139,13 @@ class GazeTools(harness.CliTest):
         self.assertEqual([(e["movement"], e["duration_ms"]) for e in self.events("touching.asc", "--method", "log")],
                          [("fixation", "104"), ("fixation", "96"), ("saccade", "20"), ("fixation", "180")])
 
+    def test_asks_for_nothing_that_the_log_states(self):
+        rows = "t[ns],u[1],v[1],valid,eye\n" + "".join(f"{4000000 * i},0.5,0.5,ok,cyclopean\n" for i in range(40))
+        for preamble, asks in (("", True), ("# display_px 1920 1080\n", False)):
+            self.write("log.csv", "# gazetrace-gaze 1\n" + preamble + rows)
+            said = self.assert_refused(["gaze", "events", "log.csv", "-o", "events.tsv"], ["--screen-cm W,H", "--screen-distance-cm D"])
+            self.assertEqual("--screen-px" in said, asks, preamble)
+
     def test_no_saccade_lasts_no_time_and_no_mean_is_above_the_peak(self):
         for rate in ("60", "250", "1000"):
             self.run_ok("gaze", "synth", "-o", "log.csv", "--duration", "20s", "--noise", "0.02", "--rate", rate, "--overwrite")
