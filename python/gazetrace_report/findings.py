@@ -36,8 +36,8 @@ def comparisons(results):
                     ours, theirs = test.score(metric.name, part), baseline.score(metric.name, part)
                     came_out = verdict(ours, theirs, metric.lower)
                     if came_out:
-                        rows.append((test, baseline, metric.name, part, ours, theirs, came_out))
-    return pandas.DataFrame(rows, columns=["test", "baseline", "metric", "part", "ours", "theirs", "verdict"])
+                        rows.append((test, baseline, metric.name, part, ours, theirs, came_out, metric.lower))
+    return pandas.DataFrame(rows, columns=["test", "baseline", "metric", "part", "ours", "theirs", "verdict", "lower"])
 
 
 def tally(compared):
@@ -70,6 +70,18 @@ def losses(compared):
     })
 
 
+def least_flattering(compared):
+    """Of whole frames beside uniform sampling of the same cost, the comparison in which foveation does worst: by how much of the
+    widths of both intervals it is better."""
+    def gain(row):
+        width = sum(estimate.high - estimate.low for estimate in (row.ours, row.theirs) if estimate.low is not None)
+        better_by = row.theirs.mean - row.ours.mean if row.lower else row.ours.mean - row.theirs.mean
+        return better_by / width if width > 0 else 0.0
+
+    whole = [row for row in compared.itertuples() if row.part == "whole"]
+    return min(whole, key=gain) if whole else None
+
+
 def headline(results, compared):
     speeds = [speed for speed in (test.estimate("speed_up") for test in results.tests) if speed]
     if not speeds:
@@ -83,6 +95,9 @@ def headline(results, compared):
         undecided = counts.get("not told apart", 0) + counts.get("under the reference's noise", 0)
         text += (f" Over whole frames, beside uniform sampling of the same cost, they scored better in {counts.get('better', 0)} of {counts.sum()} comparisons, "
                  f"worse in {counts.get('worse', 0)}, and not told apart in {undecided}.")
+        least = least_flattering(compared)
+        text += (f" The least flattering: {least.metric} {words.with_interval(least.ours)} beside {words.with_interval(least.theirs)}, "
+                 f"{beside(least.baseline)}; {words.place(*least.test.place)}.")
     if not all(speed.tells for speed in speeds):
         text += " Too few repeats were made for intervals of the speed-up: more would say how sure it is."
     return text

@@ -152,8 +152,17 @@ class Report(reports.ReportTest):
         self.assertEqual([(row[1], row[2:5]) for row in tally[1:]],
                          [(metric, [str(int(came_out == verdict)) for verdict in ("better", "worse", "not told apart")]) for metric, came_out in whole.items()])
         counts = [list(whole.values()).count(verdict) for verdict in ("better", "worse", "not told apart")]
-        said = re.fullmatch(r"Foveated frames were rendered ([\d.]+) times as fast .* better in (\d+) of 4 comparisons, worse in (\d+), and not told apart in (\d+)\.", page.headline)
-        self.assertEqual([int(count) for count in said.groups()[1:]], counts)
+        said = re.fullmatch(r"Foveated frames were rendered ([\d.]+) times as fast .* better in (\d+) of 4 comparisons, worse in (\d+), and not told apart in (\d+)\."
+                            r" The least flattering: (\w+) ([\d.]+) \(.*\) beside ([\d.]+) \(.*\), .*; box, gaze glide\.", page.headline)
+        self.assertEqual([int(count) for count in said.groups()[1:4]], counts)
+        gains = {}
+        for metric, better in small_results.METRICS.items():
+            ours, theirs = foveated["scores"][metric]["whole"], few["scores"][metric]["whole"]
+            more = (ours["mean"] - theirs["mean"]) * (-1 if better == "lower" else 1)
+            gains[metric] = more / (ours["high"] - ours["low"] + theirs["high"] - theirs["low"])
+        self.assertEqual(said[5], min(gains, key=gains.get))
+        self.assert_shows(said[6], foveated["scores"][said[5]]["whole"]["mean"])
+        self.assert_shows(said[7], few["scores"][said[5]]["whole"]["mean"])
         self.assert_shows(said[1], foveated["speed_up"]["mean"])
         losses = tables_left.pop("Where uniform sampling of the same cost scored better")
         self.assertEqual(losses[0], ["metric", "in", "foveated", "uniform", "uniform run", "foveated run"])
