@@ -103,13 +103,13 @@ class GazetraceSettings(bpy.types.PropertyGroup):
     filter: any_name("filters", "Filter", "How pixels between the samples are filled. Empty: the preset's")
     samples: IntProperty(
         name="Samples",
-        description="Samples a pixel on average, whatever the sampling. 0: the sampling's own",
+        description="Samples a pixel on average, with any sampling. 0: the sampling's own",
         min=0,
         soft_max=1024,
     )
     view_source: EnumProperty(
         name="View",
-        description="What light looks like in display pictures",
+        description="The view of display pictures",
         items=[
             ("SCENE", "Of the scene", "Exposure, view and look of the scene, from Blender's own configuration"),
             ("PROGRAM", "Of the program", "The program's own view at its own exposure"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Columns by name: what plans, timing and gaze logs are made of."""
+"""Columns by name: the parts of plans, timing and gaze logs."""
 
 import difflib
 

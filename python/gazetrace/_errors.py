@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can go wrong, in the words of the library."""
+"""Errors, with the messages of the library."""
 
 import warnings
 
@@ -9,7 +9,7 @@ Error.__module__ = "gazetrace"  # as users see it; the reports have it without t
 
 
 class GazetraceWarning(UserWarning):
-    """What the program prints as a warning."""
+    """A warning, as the program prints it."""
 
 
 def warn(texts):

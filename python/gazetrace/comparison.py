@@ -19,7 +19,7 @@ _FIRST_METRICS = ["mse", "relmse", "psnr", "ssim", "flip"]
 
 @dataclass
 class _Shown:
-    """A picture with what is known of it."""
+    """A picture with its known properties."""
 
     number: int
     picture: object
@@ -260,7 +260,7 @@ class ComparisonResult:
 
     @property
     def columns(self):
-        """One row a frame: its number, what the eye did, and the value of each metric, as arrays."""
+        """One row a frame: its number, the eye movement, and the value of each metric, as arrays."""
         return columns_of(
             [
                 {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Jobs: what one run is asked to do."""
+"""Jobs: descriptions of a run."""
 
 import contextlib
 import json
@@ -54,7 +54,7 @@ class Job:
 
     @classmethod
     def from_toml(cls, text, path="settings"):
-        """A job from the text of a settings file; `path` is what messages call it."""
+        """A job from the text of a settings file; `path` is its name in messages."""
         job = cls()
         job._core.add_toml(text, path)
         return job
@@ -133,7 +133,7 @@ class Job:
         return f"Job({', '.join(f'{name}={value}' for name, value in words.items())})"
 
     def plan(self):
-        """What would be rendered, decided before the first ray: a `Plan`. Needs the scene only where the camera is in it."""
+        """The plan of the run, made before the first ray: a `Plan`. Needs the scene only if the camera is in it."""
         with self._in_its_words():
             planned = _core.Planned(self._core)
         warn(planned.warnings())

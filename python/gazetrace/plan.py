@@ -91,7 +91,7 @@ class Plan:
 
     @property
     def decisions(self):
-        """What was decided where the job left a choice, as pairs."""
+        """Decisions where the job left a choice, as pairs."""
         return self._core.decisions()
 
     @property

@@ -132,7 +132,7 @@ class Frame:
 
     @property
     def exposure_ev(self):
-        """The exposure in stops; `radiance * 2**exposure_ev` is what the view shows."""
+        """The exposure in stops; the view shows `radiance * 2**exposure_ev`."""
         return self._core.exposure_ev
 
     @property
@@ -272,7 +272,7 @@ class Rendering:
 
     @property
     def view(self):
-        """What display images are shown through."""
+        """The view of display images."""
         return self._core.view()
 
     @property

@@ -30,7 +30,7 @@ def import_scene(finds_itself=False):
 def which(words):
     commands = {"sweep": sweep, "gaze": gaze}
     if not words or words[0] not in commands:
-        raise Error("name what to report on: sweep or gaze")
+        raise Error("name the report: sweep or gaze")
     del sys.argv[1]
     commands[words[0]]()
 

@@ -94,7 +94,7 @@ def say(text, result, given):
 def check_output(path, overwrite, read=()):
     """`read`: files that are no output, whatever is overwritten."""
     if any(os.path.exists(path) and os.path.exists(other) and os.path.samefile(path, other) for other in read):
-        raise Error(f"{path}: is what is reported on; name another file", "input")
+        raise Error(f"{path}: is the input of the report; name another file", "input")
     if path.exists() and not overwrite:
         raise Error(f"{path}: exists already; give --overwrite to replace it", "input")
     if path.is_dir():

@@ -29,7 +29,7 @@ def parse(words):
     parser = Parser("gazetrace gaze report", usage="gazetrace gaze report LOG [options]", description=DESCRIPTION)
     parser.add_argument("-o", "--output", type=Path, default=Path("gaze.html"), metavar="OUT.html", help="the page, one file that needs nothing else (default: gaze.html)")
     parser.add_argument("--parts", type=Path, metavar="DIR", help="writes every diagram as .svg, and as .tsv the events, samples and vergence")
-    parser.add_argument("--frame-image", type=Path, metavar="FILE", help="a .png or .jpg of what was seen, such as a rendered frame, behind scanpath and heat map")
+    parser.add_argument("--frame-image", type=Path, metavar="FILE", help="a .png or .jpg of the stimulus, such as a rendered frame, behind scanpath and heat map")
     parser.add_argument("--heat-sigma", type=float, default=1, metavar="DEG", help="size of a fixation's spot on the heat map, its standard deviation (default: 1)")
     parser.add_argument("--overwrite", action="store_true", help="replaces files that are there")
     add_json_option(parser)

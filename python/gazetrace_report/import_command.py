@@ -47,7 +47,7 @@ def parse(words):
                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", type=Path, help="the scene")
     parser.add_argument("-o", "--output", required=True, type=Path, metavar="SCENE.glb", help="the scene as binary glTF")
-    parser.add_argument("--overwrite", action="store_true", help="replaces what is there")
+    parser.add_argument("--overwrite", action="store_true", help="replaces an existing file")
     add_json_option(parser)
     return parser.parse_args(with_json_joined(words))
 

@@ -9,7 +9,7 @@ from .errors import Error
 
 
 def parse(words):
-    parser = Parser("gazetrace report", description="Make a page, diagrams and tables of what a sweep measured.")
+    parser = Parser("gazetrace report", description="Make a page, diagrams and tables of the results of a sweep.")
     parser.add_argument("results", type=Path, help="results.json of a sweep, or its folder")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="the page; default: report.html beside the results")
     parser.add_argument("--plots", type=Path, metavar="DIR", help="writes every diagram as .svg and .pdf and its numbers as .csv; replaces them")

@@ -104,7 +104,7 @@ def bands(results, place):
 def published(results):
     rows = [(words.place(*row.place), row.name, row.estimate("speed_up"), words.number(other["speed_up"]), other["source"])
             for row in results.rows for other in row.raw.get("published") or []]
-    return table(pandas.DataFrame(rows, columns=["scene and gaze", "run", "here", "published", "where"]), "Speed-up beside what was published") if rows else ""
+    return table(pandas.DataFrame(rows, columns=["scene and gaze", "run", "here", "published", "where"]), "Speed-up beside the published one") if rows else ""
 
 
 def fixed_quality(results):

@@ -16,7 +16,7 @@ inline constexpr const char* kExitCodesHelp =
     "quality is out of reach, before any picture; 3 failed while running; 4 interrupted, goes on with --resume.";
 
 inline constexpr const char* kConfigHelp =
-    "--config FILE reads any of these options from a TOML file (frames = \"1-100\"); what stands on the command line "
-    "wins. 'gazetrace render --print-config' writes every option of 'render' and 'plan' with its value.\n";
+    "--config FILE reads any of these options from a TOML file (frames = \"1-100\"); options on the command line "
+    "win. 'gazetrace render --print-config' writes every option of 'render' and 'plan' with its value.\n";
 
 }  // namespace gazetrace

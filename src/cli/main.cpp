@@ -163,7 +163,7 @@ bool names_no_command(const CLI::App& app) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app{"gazetrace renders what a person looked at: foveated path tracing along a recorded gaze", "gazetrace"};
+  CLI::App app{"gazetrace: foveated path tracing along a recorded gaze", "gazetrace"};
   app.set_version_flag("--version", std::string("gazetrace ") + kVersion, "Print the version and exit");
   app.require_subcommand(1);
   app.fallthrough(false);
@@ -189,7 +189,7 @@ int run(int argc, char** argv) {
 
   std::string config;
   app.add_option("--config", config,
-                 "A TOML file with options of the command; what stands on the command line wins ('gazetrace render "
+                 "A TOML file with options of the command; the command line wins ('gazetrace render "
                  "--print-config' writes one for 'render' and 'plan')")
       ->type_name("FILE");
 

@@ -15,13 +15,14 @@ namespace {
 
 constexpr const char* kHead =
     "# Options of a job\n\n"
-    "What `gazetrace render` and `gazetrace plan` take on the command line, in a settings file (`--config`) and from "
-    "the\n"
-    "program that embeds the library. In a settings file the name stands without dashes: `spp = 16`.\n\n"
+    "The options of `gazetrace render` and `gazetrace plan`, for the command line, a settings file (`--config`) and "
+    "programs\n"
+    "that embed the library. In a settings file the name stands without dashes: `spp = 16`.\n\n"
     "This page is made by `gazetrace list options --markdown` from the definitions in `src/job/schema/`; a test holds "
     "it\n"
-    "against them. *Touches* says what an option has an influence on: options that touch `sampling` mean nothing to a\n"
-    "uniform frame, and what only touches `speed`, `output` or `talk` changes no pixel's light.\n";
+    "against them. *Touches* names the stages that an option changes: options that touch `sampling` have no effect on "
+    "a\n"
+    "uniform frame, and options that only touch `speed`, `output` or `talk` change no pixel's light.\n";
 
 bool is_positional(const Option& option) {
   return !option.flags.starts_with('-');
@@ -114,8 +115,7 @@ std::vector<FormerLine> former_lines() {
 
 std::string former_options_as_markdown() {
   std::string text =
-      "\n## Former options\n\nWhat took the place of options that are no more, and what other programs call "
-      "differently "
+      "\n## Former options\n\nReplacements of options that were removed, and of names in other programs "
       "(`gazetrace help former-options`).\nA `*` is the value that was given.\n\n| option | now |\n| --- | --- |\n";
   for (const auto& [option, now] : former_lines()) {
     text += fmt::format("| `{}` | {} |\n", in_cell(option), in_cell(escaped(now)));

@@ -21,7 +21,7 @@ T json_whole(const Json& value, const std::string& path) {
                                                  : !value.is_number();
   if (!holds) {
     throw Error(ErrorKind::input, path, value.dump() + " is not a whole number that can stand there",
-                "it is damaged: remove it, and call again what wrote it");
+                "it is damaged: remove it, and repeat the command that wrote it");
   }
   return value.template get<T>();
 }

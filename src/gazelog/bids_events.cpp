@@ -176,7 +176,7 @@ Json screen_json(const GazeLog& log) {
 Json events_sidecar(Eye eye, bool has_stated, bool has_trials) {
   Json json{{kBidsWriterKey, kBidsWriter},
             {"Columns", {"onset", "duration", "trial_type", "blink", "message"}},
-            {"Description", fmt::format("What the log states of the movements of the {} eye", to_string(eye))},
+            {"Description", fmt::format("Movements of the {} eye as the log states them", to_string(eye))},
             {"OnsetSource", "timestamp"},
             {"duration", {{"Units", "s"}}},
             {"trial_type",
@@ -205,7 +205,7 @@ Json run_events_sidecar(const GazeLog& log) {
   } else {
     json["StimulusPresentation"] = {{"Description", "Gaze in the head: no screen is described"}};
   }
-  json["trial_type"] = {{"Description", "What happened"},
+  json["trial_type"] = {{"Description", "Kind of event"},
                         {"Levels",
                          {{"recording", "Gaze was recorded without a pause"},
                           {"message", "A message of the experiment or of the tracker"}}}};

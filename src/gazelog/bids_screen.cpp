@@ -71,7 +71,7 @@ PositionOrigin bids_screen_origin(const Sidecars& events, const GazeReadOptions&
   }
   throw Error(ErrorKind::input, events.source(screen_key("ScreenOrigin")),
               fmt::format("its ScreenOrigin is '{}'", stated),
-              from_right ? "give `flip-x`, which counts from the left what counts from the right"
+              from_right ? "give `flip-x`, which counts from the left"
                          : "top left, bottom left and center can be read; else give `origin`");
 }
 

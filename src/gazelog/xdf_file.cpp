@@ -290,7 +290,7 @@ std::vector<XdfStream> read_xdf(std::string_view bytes, const std::string& path,
     rest.remove_prefix(boundary + kBoundary.size());
   }
   if (damaged > 0) {
-    damages.push_back(fmt::format("{}: {} damaged or cut off {}; what could be read is used", path, damaged,
+    damages.push_back(fmt::format("{}: {} damaged or cut off {}; the readable part is used", path, damaged,
                                   damaged == 1 ? "chunk" : "chunks"));
   }
   return streams;

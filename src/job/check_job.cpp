@@ -44,7 +44,7 @@ void check_target(const JobSettings& job) {
   }
   const char* const option = "`target-jod`";
   if (job.gaze.path.empty() && !job.gaze_at) {
-    throw Error(ErrorKind::usage, option, "what is seen depends on where the eye looks",
+    throw Error(ErrorKind::usage, option, "visibility depends on where the eye looks",
                 "give `gaze` or `gaze-at`, and the `screen`");
   }
   if (regions_of(job.foveation.sampling) != nullptr) {

@@ -49,7 +49,7 @@ void check_confined(const Option& option, const std::vector<std::string>& values
                     const std::string& place) {
   const std::string at = place + ": " + option.name;
   if (option.name == "allow-outside" && values != std::vector<std::string>{"false"}) {
-    throw Error(ErrorKind::input, at, "settings that are not trusted cannot lift what holds scenes to their folder",
+    throw Error(ErrorKind::input, at, "settings that are not trusted cannot let scenes out of their folder",
                 "give `allow-outside` yourself, or leave `confine` out where you trust the settings");
   }
   for (const std::string& value : values) {

@@ -64,7 +64,7 @@ JudgedFrames plan_judged_frames(const JobSettings& job, const ViewInputs& inputs
   const SequenceLength length = sequence_length(job, inputs);
   if (length.frames > 1 && !sees_changes(job.fps)) {
     throw Error(ErrorKind::usage, "`target-jod`",
-                fmt::format("{:g} frames a second are too few for its measure, which looks at what changes within a "
+                fmt::format("{:g} frames a second are too few for its metric, which measures changes within a "
                             "quarter of a second",
                             frames_per_second(job.fps)),
                 "give a higher `fps`, or a budget");

@@ -146,7 +146,7 @@ void check_density_pictures(const FoveationSettings& foveation, const FramePlan&
 void warn_of_filter(const JobSettings& job, Warnings& warnings) {
   if (job.trace.filter != PixelFilter::box && Reconstruction({job.filter}).needs().guides) {
     warnings.push_back(
-        fmt::format("`filter` {} takes edges, texture and what shines from a box of one pixel: `pixel-filter` "
+        fmt::format("`filter` {} takes edges, texture and emission from a box of one pixel: `pixel-filter` "
                     "blackman-harris is missing there, `filter` linear keeps it",
                     job.filter));
   }

@@ -95,7 +95,7 @@ void check_scene_shows(const Scene& scene) {
     text += "; and " + std::to_string(left_out.size() - kMost) + " more";
   }
   throw Error(ErrorKind::input, scene.source, "there is no geometry to render" + text,
-              "'gazetrace scene' tells what the file contains");
+              "'gazetrace scene' prints the contents of the file");
 }
 
 Scene load_job_scene(const JobSettings& job, const std::function<void(std::size_t, std::size_t)>& progress) {

@@ -118,10 +118,9 @@ std::string flicker_range_text(const FlickerRange& range) {
   return fmt::format(
       "from {:g} to {:g} Hz, over the second up to each frame; {}", range.lowest_hz, range.highest_hz,
       range.fusion_hz > range.highest_hz
-          ? fmt::format(
-                "flicker of up to {:.0f} Hz would be visible, but what is faster than {:g} Hz cannot be measured "
-                "at this frame rate: it appears as something slower, or not at all",
-                range.fusion_hz, range.highest_hz)
+          ? fmt::format("flicker of up to {:.0f} Hz would be visible, but flicker above {:g} Hz cannot be measured "
+                        "at this frame rate: it appears slower, or not at all",
+                        range.fusion_hz, range.highest_hz)
           : "all visible flicker can be measured at this frame rate");
 }
 

@@ -249,7 +249,7 @@ MeanStamp read_mean_stamp(const std::string& path) {
     throw Error(ErrorKind::input, path, std::string("cannot read the EXR: ") + e.what());
   }
   if (stamp.mean_digest.empty() || stamp.seeds.empty()) {
-    throw Error(ErrorKind::input, path, "does not say what it is an estimate of, or with which seed",
+    throw Error(ErrorKind::input, path, "does not state the job or the seed of its samples",
                 "render it by this version of gazetrace");
   }
   return stamp;

@@ -185,7 +185,7 @@ void refuse_bad_files(const std::string& directory, const std::vector<BadFile>& 
     named += fmt::format(", and {} more", bad.size() - kNamed);
   }
   throw Error(ErrorKind::input, directory,
-              fmt::format("{} not what was written, of frames {}: {}",
+              fmt::format("{} not as recorded, of frames {}: {}",
                           bad.size() == 1 ? "1 file is" : fmt::format("{} files are", bad.size()),
                           format_frame_list({frames.begin(), frames.end()}), named),
               "render their parts again with `resume`, which makes these frames alone, or give `trust-files`");

@@ -121,7 +121,7 @@ std::string published_text(const Results& results) {
                           other.speed_up, other.source);
     }
   }
-  return text.empty() ? text : "\nspeed-up beside what was published\n" + text;
+  return text.empty() ? text : "\nspeed-up beside the published one\n" + text;
 }
 
 std::string fixed_quality_text(const Results& results) {

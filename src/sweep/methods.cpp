@@ -116,7 +116,7 @@ const char* name_of(FlipToneMapper tone_mapper) {
 
 std::string exposures_of(const FlipExposureSettings& flip) {
   const auto place = [](const std::optional<double>& ev) {
-    return ev ? fmt::format("{:g} stops", *ev) : std::string("what the first reference frame asks for");
+    return ev ? fmt::format("{:g} stops", *ev) : std::string("that of the first reference frame");
   };
   return fmt::format("hdr_flip through {} at {} exposures from {} to {}", name_of(flip.tone_mapper),
                      flip.count ? std::to_string(*flip.count) : "as many as needed", place(flip.start_ev),
@@ -196,15 +196,16 @@ std::string sweep_methods(const SweepPlan& plan, const Results& results) {
       m.repeats, m.warm_up, m.baselines.reference_spp);
   if (m.write_png || m.write_exr) {
     text += fmt::format(
-        "End-to-end ratios are of these times and what exposure, view and writing of the pictures ({}) took in the "
+        "End-to-end ratios are of these times and those of exposure, view and writing of the pictures ({}) in the "
         "first repeat; reading the scene, done once for all rows, is not in them. ",
         m.write_png && m.write_exr ? "PNG and EXR"
         : m.write_png              ? "PNG"
                                    : "EXR");
   }
   text += fmt::format(
-      "Efficiency is the expected over the measured time of tracing and reconstruction, the expected one from what a "
-      "sample costs in each region of a frame with {} samples in every pixel. Equal-sample baselines have the test's "
+      "Efficiency is the expected over the measured time of tracing and reconstruction, the expected one from the cost "
+      "of a "
+      "sample in each region of a frame with {} samples in every pixel. Equal-sample baselines have the test's "
       "mean number of samples per pixel; rates of equal-time baselines were found by measurement and then measured "
       "like "
       "all others. ",
@@ -213,7 +214,7 @@ std::string sweep_methods(const SweepPlan& plan, const Results& results) {
       "Metrics: {}{}; display of {} response and {:g} cd/m2 at a contrast of {:g}:1 under {:g} lux, of which a share "
       "of {:g} comes back. Eccentricity is the angle between the rays to the recorded gaze and to a pixel; bands of it "
       "begin at {} "
-      "degrees, whatever the regions of a test the fovea of the scores ends at {:g} and the intermediate region at "
+      "degrees. With any regions of a test, the fovea of the scores ends at {:g} and the intermediate region at "
       "{:g} "
       "degrees. Scores are means over frames in which the eye fixates or, where no frame is known to be of a fixation, "
       "over all with gaze",

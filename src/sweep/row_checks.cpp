@@ -39,7 +39,7 @@ void check_gaze(const std::vector<SweepTest>& tests, const SweepTest& test, cons
       throw Error(ErrorKind::input, place,
                   fmt::format("with '{}' the eye looks elsewhere than with '{}', and both are gaze '{}'", test.label,
                               other.label, test.gaze),
-                  "give what moves the gaze in a [[gaze]] of another name");
+                  "give options that move the gaze in a [[gaze]] of another name");
     }
   }
 }

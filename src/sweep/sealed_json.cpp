@@ -156,7 +156,7 @@ void drop_damaged(const std::string& directory, bool trust_files, int threads, c
     if (!damage.problem.empty()) {
       fs::remove(records[i], ignored);
       if (observer.warn) {
-        observer.warn(fmt::format("{}: {}; what it held does not count as finished", records[i], damage.problem));
+        observer.warn(fmt::format("{}: {}; it does not count as finished", records[i], damage.problem));
       }
     }
   }

@@ -109,7 +109,7 @@ SweepRun run_of(const Json& json) {
 // began.
 template <class Read>
 auto load(const std::string& path, const Read& read,
-          const char* remedy = "call again, and what it held is measured again")
+          const char* remedy = "call again, and its contents are measured again")
     -> std::optional<decltype(read(Json()))> {
   if (!fs::is_regular_file(path)) {
     return std::nullopt;

@@ -51,7 +51,7 @@ std::string SweepTask::label() const {
 SweepDirectory prepare_sweep(const SweepPlan& plan, const std::optional<SweepTask>& task,
                              const SweepObserver& observer) {
   if (task && plan.restart) {
-    throw Error(ErrorKind::usage, "`restart`", "would throw away what other chunks have measured",
+    throw Error(ErrorKind::usage, "`restart`", "would delete the measurements of other chunks",
                 "remove the folder, or leave it out");
   }
   return open_directory(plan, task, task ? kManyMachines : machine_description(), observer);
@@ -102,7 +102,7 @@ Results merge_sweep(const SweepPlan& plan, const std::vector<std::string>& folde
         fmt::format("{} of the sweep's parts are missing: {}{}", scope.missing.size(),
                     fmt::join(scope.missing.begin(), scope.missing.begin() + static_cast<std::ptrdiff_t>(named), ", "),
                     named < scope.missing.size() ? ", ..." : ""),
-        "run the chunks that have not finished again; they keep what they have");
+        "run the unfinished chunks again; they keep their finished rows");
   }
   Results results = concluded(plan, measured);
   results.machine = machine_of_tasks(measured.machines);

@@ -114,7 +114,7 @@ class DamagedSweep(harness.CliTest):
             said = process.communicate(timeout=100)[1]
             ends.append(process.returncode)
             if process.returncode == 4:
-                self.assertRegex(said, r"^gazetrace: interrupted by signal \w+; what has been measured is kept, and the same call goes on\n$")
+                self.assertRegex(said, r"^gazetrace: interrupted by signal \w+; finished measurements are kept, and the same call continues\n$")
         self.assertLessEqual(set(ends), {0, 4})
         self.assertIn(4, ends)
         limited = self.run_program(*words[:2], "-o", "limited", "--quiet", "--max-time", "300ms", "--grace", "0s")

@@ -62,7 +62,7 @@ class MergeLooksAtFiles(Farm):
         merged = self.run_program("merge", "out")
         self.assertEqual(merged.returncode, 2, merged.stdout + merged.stderr)
         for words in ("f.0001.exr: is missing", "f.0002.png: is missing", "f.0003.exr: has 1000 bytes in place of",
-                      "f.0005.exr: holds frame 6", "f.0006.png: has another content", "5 files are not what was written",
+                      "f.0005.exr: holds frame 6", "f.0006.png: has another content", "5 files are not as recorded",
                       "frames 1-3,5-6"):
             self.assertIn(words, merged.stderr)
         self.assertFalse((out / "f.run.json").exists())

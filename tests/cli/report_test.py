@@ -172,7 +172,7 @@ class Report(reports.ReportTest):
                 self.assert_shows_estimate(shown, one["scores"][metric][places[part]])
         self.assertIn("the whole frame", [row[1] for row in losses[1:] if row[0] == "flip"])
 
-        ((place, run, here, there, where),) = tables_left.pop("Speed-up beside what was published")[1:]
+        ((place, run, here, there, where),) = tables_left.pop("Speed-up beside the published one")[1:]
         self.assertEqual((place, run, where), ("box, gaze glide", foveated["label"], "Table 1"))
         self.assert_shows_estimate(here, foveated["speed_up"])
         self.assert_shows(there, 57.2534)

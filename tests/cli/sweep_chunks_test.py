@@ -88,7 +88,7 @@ class Chunks(harness.CliTest):
         self.run_ok("sweep", "merge", "plan.toml", "-o", "out")
         self.check_as_one_process("out", 2)
         self.assert_refused(["sweep", "plan.toml", "-o", "out"], ["holds measurements of another machine"])
-        self.assert_refused(self.chunk(1, 2, "out", "--restart"), ["would throw away what other chunks have measured"])
+        self.assert_refused(self.chunk(1, 2, "out", "--restart"), ["would delete the measurements of other chunks"])
 
     def test_a_chunk_without_rows(self):
         told = self.run_program(*self.chunk(40, 40, "out"))

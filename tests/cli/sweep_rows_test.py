@@ -180,7 +180,7 @@ class SweepRows(harness.CliTest):
         page = (self.folder / "report.html").read_text()
         for fps, note in zip((4, 5), notes):
             words = (f"flicker at {fps} frames a second: from 1 to 2 Hz",
-                     "what is faster than 2 Hz cannot be measured at this frame rate")
+                     "flicker above 2 Hz cannot be measured at this frame rate")
             for word in words:
                 self.assertIn(word, note)
                 self.assertIn(word, methods)

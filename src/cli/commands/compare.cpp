@@ -29,7 +29,9 @@ Command add_compare_command(CLI::App& app, const Invocation& /*invocation*/) {
   CompareJob& job = arguments->job;
   arguments->options.bind(app, job);
   app.add_option("reference", job.reference, "Picture, or sequence as name.####.exr")->required()->type_name("PATTERN");
-  app.add_option("test", job.test, "What is measured against it")->required()->type_name("PATTERN");
+  app.add_option("test", job.test, "The picture or sequence that is measured against it")
+      ->required()
+      ->type_name("PATTERN");
   app.footer(std::string(kConfigHelp) + kExitCodesHelp);
   return {[arguments] { return run_compare(arguments->job); },
           [arguments](const std::string& path) { arguments->options.read_config(arguments->job, "compare", path); }};

@@ -213,8 +213,8 @@ int run_demo(const DemoArguments& arguments) {
   if (has_page) {
     made.emplace_back("report", in("report.html"));
   }
-  std::string text = fmt::format("Done in {} (frames after {}). What there is to look at:\n", duration_text(all_s),
-                                 duration_text(first_picture_s));
+  std::string text =
+      fmt::format("Done in {} (frames after {}). Look at:\n", duration_text(all_s), duration_text(first_picture_s));
   nlohmann::ordered_json json{{"seconds", all_s}, {"first_frames_s", first_picture_s}};
   for (const auto& [name, path] : made) {
     text += fmt::format("  {:<14}{}\n", name, path);
@@ -241,7 +241,7 @@ Command add_demo_command(CLI::App& app, const Invocation& /*invocation*/) {
   app.add_option("--size", arguments->size, "Their size; default: that of the example or of --config")
       ->type_name("WxH");
   app.add_flag("--no-sweep", arguments->without_sweep, "Leaves out the measurement and its report");
-  app.add_flag("--overwrite", arguments->overwrite, "Replaces what the folder holds of an earlier demo");
+  app.add_flag("--overwrite", arguments->overwrite, "Replaces an earlier demo in the folder");
   add_json_option(app, arguments->json, arguments->overwrite);
   app.footer(
       std::string("--config FILE takes a job of your own in place of the example: settings of 'gazetrace render' "

@@ -96,7 +96,7 @@ int hand_over(const FarmPlan& plan, const std::vector<std::size_t>& chunks, cons
     return tell_end(plan, failed);
   }
   if (state != 0) {
-    throw Error(ErrorKind::runtime, plan.engine, "did not take the farm: " + command, "see what it said above");
+    throw Error(ErrorKind::runtime, plan.engine, "did not take the farm: " + command, "see its message above");
   }
   return exit_done;
 }
@@ -146,7 +146,8 @@ int run_retry(const FarmArguments& arguments) {
     const TaskStatus& task = status.tasks[i];
     if (task.state == TaskState::running && (i >= plan.chunks.size() || !can_retry_beside_running(plan))) {
       throw Error(ErrorKind::usage, arguments.folder,
-                  "task " + task.name + " is running, and what follows waits for it", "wait until it ends, or end it");
+                  "task " + task.name + " is running, and the tasks after it wait for it",
+                  "wait until it ends, or end it");
     }
     if (task.state == TaskState::unknown) {
       throw Error(ErrorKind::usage, arguments.folder,
@@ -211,11 +212,12 @@ Command add_farm_command(CLI::App& app, const Invocation& /*invocation*/) {
                "For a job by others: it may name no file outside of its folder or data set, and nor may its tasks");
   add_hand_over_options(app, *arguments);
 
-  CLI::App* const status = app.add_subcommand("status", "Tell of each task whether it is done, and what is left");
+  CLI::App* const status = app.add_subcommand("status", "Print the state of each task, and the rest of the work");
   status->footer(kExitCodesHelp);
   status->add_option("folder", arguments->folder, "Where the job writes its outputs")->required()->type_name("DIR");
   add_json_option(*status, arguments->json);
-  CLI::App* const retry = app.add_subcommand("retry", "Do again what is neither done nor running, and what follows");
+  CLI::App* const retry =
+      app.add_subcommand("retry", "Repeat the tasks that are neither done nor running, and those that depend on them");
   retry->footer(kExitCodesHelp);
   retry->add_option("folder", arguments->folder, "Where the job writes its outputs")->required()->type_name("DIR");
   add_hand_over_options(*retry, *arguments);

@@ -56,7 +56,7 @@ Command add_help_command(CLI::App& app, const Invocation& /*invocation*/) {
   const auto words = std::make_shared<std::vector<std::string>>();
   app.add_option("command", *words,
                  "Such as render or gaze inspect; default: the list of all. farm-options: those of machines "
-                 "that share a sequence; former-options: what took the place of others")
+                 "that share a sequence; former-options: replacements of old options")
       ->type_name("COMMAND");
   return {[words, &app] { return run_help(*app.get_parent(), *words); }, {}};
 }

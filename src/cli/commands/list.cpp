@@ -234,7 +234,7 @@ Command add_list_command(CLI::App& app, const Invocation& /*invocation*/) {
   for (const Family& family : families()) {
     names += (names.empty() ? "" : "|") + family.name;
   }
-  app.add_option("family", arguments->family, "What to list; default: everything but options")
+  app.add_option("family", arguments->family, "The list to print; default: all but options")
       ->type_name(names + "|" + kOptions);
   const auto options = std::make_shared<CommandOptions<ColorSettings>>(
       color_config_schema().with_headings([](const Option&) { return "Options"; }));

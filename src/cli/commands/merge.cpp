@@ -106,9 +106,8 @@ Command add_merge_command(CLI::App& app, const Invocation& invocation) {
   app.add_flag("--resume", arguments->resume,
                "Of --mean: adds to the pictures that are there the renders that are not in them yet");
   app.add_flag("--allow-missing", arguments->allow_missing,
-               "Joins what is there though frames are missing, or their files bad");
-  app.add_flag("--trust-files", arguments->trust_files,
-               "Does not compare the files of the parts with what their records say was written");
+               "Joins the good frames although others are missing, or their files bad");
+  app.add_flag("--trust-files", arguments->trust_files, "Does not compare the files of the parts with their records");
   app.add_option("--threads", arguments->threads, "For comparing files; 0: as many as the machine has")
       ->check(CLI::NonNegativeNumber)
       ->type_name("N");

@@ -76,7 +76,7 @@ std::string counts_as_table(const std::vector<FrameCounts>& frames) {
                         counts.nominal_ratio(), counts.traced_ratio());
   }
   return text +
-         "nominal: samples of a block divided by its size, for every pixel of the region; traced: what the "
+         "nominal: samples of a block divided by its size, for every pixel of the region; traced: samples that the "
          "blocks really get,\nwith those that straddle a border or an edge having one site for each region in "
          "them\n";
 }
@@ -258,7 +258,7 @@ Command add_plan_command(CLI::App& app, const Invocation& /*invocation*/) {
                "Samples per region, nominal and traced, and their ratio to uniform frames of the rate where the eye "
                "looks; needs no scene");
   app.add_flag("--model-gain", arguments->model_gain,
-               "What eccentricity alone can save on this screen with this gaze, in samples at equal visible error, by "
+               "The saving of eccentricity alone on this screen with this gaze, in samples at equal visible error, by "
                "FovVideoVDP's model; content and masking are left out; needs no scene")
       ->excludes("--counts");
   app.add_option("--chunks", arguments->chunks,

@@ -164,7 +164,7 @@ int run_sweep_command(const SweepArguments& arguments) {
     if (error.kind() != ErrorKind::interrupted) {
       throw;
     }
-    std::fprintf(stderr, "gazetrace: interrupted by %s; what has been measured is kept, and the same call goes on\n",
+    std::fprintf(stderr, "gazetrace: interrupted by %s; finished measurements are kept, and the same call continues\n",
                  interruption.reason().c_str());
     return exit_interrupted;
   }
@@ -186,15 +186,15 @@ Command add_sweep_command(CLI::App& app, const Invocation& /*invocation*/) {
   // What a sweep and its merge have in common: the merge must know the plan as the chunks knew it.
   const auto shared_schema = [] {
     OptionSchema<SweepArguments> schema;
-    schema.value("plan", &SweepArguments::plan, "PLAN.toml", "Scenes, gazes, settings, reference and what to measure");
+    schema.value("plan", &SweepArguments::plan, "PLAN.toml", "Scenes, gazes, settings, reference and measurements");
     schema.value(
         "-o,--output", &SweepArguments::output, "FOLDER",
-        "Results, pictures and what is needed to go on after an interruption; default: the plan's name with .sweep");
+        "Results, pictures and the state for continuing after an interruption; default: the plan's name with .sweep");
     schema.value("--frames", &SweepArguments::frames, "LIST", "In place of the plan's");
     schema.flag("--confine", &SweepArguments::confine,
                 "Refuses a plan that names files outside of its folder or data set; for plans of others");
     schema.flag("--trust-files", &SweepArguments::trust_files,
-                "Does not compare finished pictures in the folder with what was written, which reads them once");
+                "Does not compare finished pictures in the folder with their digests, which reads them once");
     return schema;
   };
   OptionSchema<SweepArguments> schema = shared_schema();
@@ -210,7 +210,7 @@ Command add_sweep_command(CLI::App& app, const Invocation& /*invocation*/) {
   schema.value("--max-time", &SweepArguments::max_time, "DURATION",
                "Ends as if by a signal so long after its beginning, --grace included; scenes that are loaded and "
                "pictures that are scored then are finished before");
-  schema.flag("--restart", &SweepArguments::restart, "Throws away what the folder holds of an earlier sweep");
+  schema.flag("--restart", &SweepArguments::restart, "Deletes an earlier sweep in the folder");
   schema.flag("--quiet", &SweepArguments::quiet, "Tells nothing but the table");
   const auto options = std::make_shared<CommandOptions<SweepArguments>>(std::move(schema));
   options->bind(app, *arguments);
@@ -223,7 +223,7 @@ Command add_sweep_command(CLI::App& app, const Invocation& /*invocation*/) {
   merge_options->bind(*merge, *arguments);
   merge
       ->add_option("folders", arguments->folders,
-                   "Where chunks were written into folders of their own; what they hold is taken into --output")
+                   "Folders of chunks that were written apart; their results are taken into --output")
       ->type_name("DIR");
   add_json_option(*merge, arguments->merge_json);
   app.require_subcommand(0, 1);

@@ -28,8 +28,7 @@ struct EnumNames<VideoCodec> {
 namespace {
 
 constexpr const char* kContingent =
-    "Gaze-contingent: sampled for where one viewer looked. Other viewers look elsewhere and see what that viewer did "
-    "not.";
+    "Gaze-contingent: sampled for the gaze of one viewer. Other viewers look elsewhere and see other errors.";
 
 struct VideoArguments {
   CompareJob job;  // its reference and test are the two sequences; the same one twice where there is one
@@ -268,7 +267,7 @@ OptionSchema<VideoArguments> video_schema() {
   schema.value("--crf", at(&VideoArguments::video, &VideoSettings::crf), "0..51",
                "Quality of h264 and hevc, less is better");
   schema.value("--color", &VideoArguments::color, "srgb|rec709|display-p3|linear",
-               "What the file says of its colors; default: what the run's view is for");
+               "Colour space that the file states; default: that of the run's view");
   schema.value("--ffmpeg", at(&VideoArguments::video, &VideoSettings::program), "PROGRAM", "The ffmpeg program");
   schema.flag("--overwrite", &VideoArguments::overwrite, "Replaces the file when it is there");
   schema.group("Marks");
@@ -278,17 +277,17 @@ OptionSchema<VideoArguments> video_schema() {
   schema.flag("--fixation-mark", &VideoArguments::fixation_mark,
               "Draws a mark to look at where the viewer looked (0.6 degrees; Thaler et al. 2013)");
   schema.flag("--insets", &VideoArguments::insets,
-              "Shows below each picture what is about the gaze and far from it, three times as large");
+              "Shows two parts below each picture, about the gaze and far from it, three times as large");
   schema.value("--labels", &VideoArguments::labels, "TEXT,TEXT",
-               "Writes what each sequence shows into its corner, in capitals, and beside --show-gaze what the ring is");
+               "Writes these names of the sequences into their corners, in capitals, and with --show-gaze the meaning "
+               "of the ring");
   schema.group("Frames and gaze");
   schema.value("--frames", job(&CompareJob::frames), "LIST", "Which frames; default: those that are there");
-  schema.value("--fps", job(&CompareJob::fps), "RATE",
-               "Frames a second; default: what the run record or the pictures say");
+  schema.value("--fps", job(&CompareJob::fps), "RATE", "Frames a second; default: from the run record or the pictures");
   schema.flag("--anyway", job(&CompareJob::anyway),
               "Shows sequences beside each other whose frames, views or exposures differ");
   schema.value("--gaze", shared(&JobSettings::gaze, &GazeFileSettings::path), "FILE",
-               "Where the viewer looked; default: what the pictures say");
+               "Where the viewer looked; default: from the pictures");
   schema.value("--gaze-at", shared(&JobSettings::gaze_at), "U,V",
                "A fixed gaze in fractions of the screen from its top left");
   schema.value("--gaze-offset", shared(&JobSettings::gaze_offset), "DURATION",

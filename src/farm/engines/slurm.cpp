@@ -45,7 +45,7 @@ waited=0
 known() { sed -n "s/^$1 //p" jobs 2>/dev/null; }
 # squeue also fails for a job that it has forgotten, and tells nothing then. Where it cannot say what there is at all, a
 # chunk that runs would be handed over twice.
-squeue -h -o %A > /dev/null || { echo "Slurm does not say what is in its queue: call again once it does" >&2; exit 3; }
+squeue -h -o %A > /dev/null || { echo "Slurm does not list its queue: call again once it does" >&2; exit 3; }
 for job in $(known chunks); do
   while [ "$waited" -lt 300 ] && [ -n "$(squeue -h -r -j "$job" -t CG -o %K 2>/dev/null)" ]; do
     sleep 1

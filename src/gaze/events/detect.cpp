@@ -147,7 +147,7 @@ EyeEvents detect_events(const GazeLog& log, const EventPreset& preset, std::opti
                 fmt::format("was recorded {}, and '{}' is for {} data",
                             recorded == GazeDevice::desktop ? "on a desktop" : "on a head", preset.name,
                             to_string(preset.device)),
-                fmt::format("use {}, or say with `device` what it was recorded on", fitting));
+                fmt::format("use {}, or name the device of the recording by `device`", fitting));
   }
   EyeEvents events = detect_events(log, preset.settings);
   events.preset = preset.name;

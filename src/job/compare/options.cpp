@@ -22,8 +22,7 @@ void add_limits(OptionSchema<CompareJob>& schema) {
 void add_sequence_options(OptionSchema<CompareJob>& schema) {
   schema.group("Frames and gaze");
   schema.value("--frames", &CompareJob::frames, "LIST", "Which frames; default: those that are there");
-  schema.value("--fps", &CompareJob::fps, "RATE",
-               "Frames a second; default: what the pictures or their run record say");
+  schema.value("--fps", &CompareJob::fps, "RATE", "Frames a second; default: from the pictures or their run record");
   schema.flag("--anyway", &CompareJob::anyway, "Scores sequences whose frames, views, exposures or gaze differ");
   schema.value("--gaze", at(&CompareJob::shared, &JobSettings::gaze, &GazeFileSettings::path), "FILE",
                "Where the viewer looked; default: gaze_true of the reference's pictures, else of the test's");

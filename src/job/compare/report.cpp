@@ -97,7 +97,7 @@ std::string compare_text(const ComparedSequences& compared) {
   const SequenceScores& claim = headline(summary);
   text += fmt::format("{:<14}{}\n{:<14}{}\n", "frames", shares_text(summary), "headline",
                       claim.gaze_class != "all"                     ? claim.gaze_class + " frames"
-                      : summary.back().gaze_class == "unclassified" ? "all frames: what the eye did is not known"
+                      : summary.back().gaze_class == "unclassified" ? "all frames: the eye's movements are unknown"
                                                                     : "all frames: none in a fixation");
   for (const SequenceScores& part : summary) {
     if (summary.size() == 2 && part.gaze_class == "all") {

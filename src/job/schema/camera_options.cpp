@@ -42,7 +42,7 @@ void add_path_options(JobSchema& schema) {
   schema.value("--camera-interpolation", camera_read(&CameraReadOptions::interpolation), choices<PathInterpolation>(),
                Touch::camera, "How the camera moves from one pose of the path to the next");
   schema.value("--camera-extrapolation", &JobSettings::camera_extrapolation, choices<CameraExtrapolation>(),
-               Touch::camera, "What frames before or after the path get: an error, or its first or last pose");
+               Touch::camera, "Frames before or after the path: an error, or its first or last pose");
   schema.flag("--camera-keep-time", camera_read(&CameraReadOptions::keep_time), Touch::camera,
               "The path's stamps are video times; otherwise its first stamp is video time 0");
 }
@@ -71,7 +71,7 @@ void add_lens_options(JobSchema& schema) {
 }  // namespace
 
 void add_camera_options(JobSchema& schema) {
-  schema.group("Scene camera (what is pictured)");
+  schema.group("Scene camera (the view of the picture)");
   schema
       .value("--camera", &JobSettings::camera, "NAME|INDEX", Touch::camera,
              "Camera of the glTF file by name or number from 0; default: the first one, or a view of the whole scene "

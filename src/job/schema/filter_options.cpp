@@ -40,9 +40,10 @@ void add_filter_options(JobSchema& schema) {
   schema
       .value(
           "--filter", &JobSettings::filter, "NAME", Touch::filter,
-          "Fills pixels between samples and takes noise away ('gazetrace list filters'; where the samples are is "
-          "--density, which has a 'linear', too). auto: oidn where Open Image Denoise is found, else guided; linear, "
-          "which passes single pixels through, for uniform frames with --only-pixel")
+          "Fills pixels between samples and removes noise ('gazetrace list filters'). Where samples go is --density, "
+          "which "
+          "also has a 'linear'. auto: oidn where Open Image Denoise is found, else guided; linear, which keeps single "
+          "pixels, for uniform frames with --only-pixel")
       .checked_by(check_filter_name)
       .with(Trait::always_stated)
       .with(Trait::everyday);

@@ -11,10 +11,11 @@ void add_frame_options(JobSchema& schema) {
   schema.value("--fps", &JobSettings::fps, "RATE", Touch::frames, "Frames a second: 24, 23.976 or 24000/1001")
       .with(Trait::always_stated);
   schema
-      .value("--frames,--only-frame", &JobSettings::frames, "LIST", Touch::frames,
-             "Which frames: 1-100, 1-100x2, 3,7,9-12; fixations: one in the middle of each fixation, by "
-             "the log's own events, else as 'gazetrace gaze events' detects them; default: as long as the animated "
-             "camera, else the gaze log, else the scene's animation, else the first")
+      .value(
+          "--frames,--only-frame", &JobSettings::frames, "LIST", Touch::frames,
+          "Frames: 1-100, 1-100x2, 3,7,9-12. fixations: one in the middle of each fixation, by the log's own "
+          "events, else by 'gazetrace gaze events'. Default: as long as the animated camera, else the gaze log, else "
+          "the scene's animation, else the first frame")
       .decides_nothing()
       .with(Trait::everyday);
   schema

@@ -60,7 +60,7 @@ void add_time_options(JobSchema& schema) {
       .idle_when({without_gaze_log()});
   schema
       .value("--gaze-missing", &JobSettings::gaze_missing, choices<NoGazePolicy>(), Touch::gaze,
-             "What happens in frames without usable gaze: hold the last one (the centre before the first), look at the "
+             "In frames without usable gaze: hold the last one (the centre before the first), look at the "
              "centre, render uniformly, or stop with an error")
       .idle_when({without_gaze_log()});
   schema
@@ -110,7 +110,7 @@ void add_column_options(OptionSchema<GazeFileSettings>& schema) {
 }
 
 void add_convention_options(OptionSchema<GazeFileSettings>& schema) {
-  schema.group("What the numbers mean");
+  schema.group("Meaning of the numbers");
   schema.value("--format", gaze_read(&GazeReadOptions::format), "NAME", Touch::gaze,
                "Format of the log ('gazetrace list gaze-formats'); default: found by its content");
   schema.value("--time-unit", column(&GazeColumns::time_unit), choices<TimeUnit>(), Touch::gaze, "Unit of the stamps");

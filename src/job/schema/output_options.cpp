@@ -81,9 +81,9 @@ void add_output_options(JobSchema& schema) {
       .with(Trait::everyday);
   schema
       .flag("--resume", &JobSettings::resume, Touch::output,
-            "Keeps finished frames of the same settings and inputs, after comparing their files with what was written, "
-            "and renders the rest; where frames were made under others, it refuses, or renders them again with "
-            "--overwrite")
+            "Keeps finished frames of the same settings and inputs, after comparing their files with their digests, "
+            "and renders the rest. It refuses frames of other settings or inputs; with --overwrite it renders them "
+            "again")
       .decides_nothing()
       .with(Trait::one_run)
       .with(Trait::everyday);
@@ -94,9 +94,9 @@ void add_talk_options(JobSchema& schema) {
   schema
       .value(
           "--progress", &JobSettings::progress, "auto|always|never|openjd|json|json:FD", Touch::talk,
-          "A bar on a terminal, plain lines elsewhere (auto); always: the bar; openjd: lines on stdout for workers of "
-          "Open Job Description; json: a JSON object for each event (begin, frame, warning, end) on stderr in place of "
-          "all text, json:FD: on that file descriptor")
+          "auto: a bar on a terminal, plain lines elsewhere. always: the bar. openjd: lines on stdout for workers of "
+          "Open Job Description. json: a JSON object for each event (begin, frame, warning, end) on stderr in place of "
+          "all text; json:FD: on that file descriptor")
       .decides_nothing()
       .with(Trait::one_run);
   schema.flag("--quiet", &JobSettings::quiet, Touch::talk, "No progress and no summary; warnings and errors stay")

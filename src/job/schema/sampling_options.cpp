@@ -112,10 +112,11 @@ void add_sampling_choice(JobSchema& schema) {
       schema
           .value(
               "--density", at(&JobSettings::foveation, &SamplingSettings::unused_density), "NAME|FILE", Touch::sampling,
-              "How the density of samples falls with eccentricity: a model of acuity by name ('gazetrace list "
-              "densities'), with values of its parameters as in mar:slope=0.0275; a CSV file with the columns "
-              "ecc_deg,density; or an EXR file of samples a pixel (of relative rates with --spp), stretched over the "
-              "frame, with #### in its name one for each frame. Chooses --sampling density")
+              "Density of samples over eccentricity: a model of acuity ('gazetrace list densities'), with its "
+              "parameters as "
+              "in mar:slope=0.0275; a CSV file with the columns ecc_deg,density; or an EXR file of samples a pixel (of "
+              "relative rates with --spp), stretched over the frame. #### in its name: a file for each frame. Chooses "
+              "--sampling density")
           .decides_by_file()
           .idle_when({with_other_sampling("density"), without_density()});
   within_sampling(density, density_type()).implies = {"sampling", "density"};
@@ -126,20 +127,20 @@ void add_sampling_choice(JobSchema& schema) {
   };
   OptionOf<JobSettings>& sampling =
       schema
-          .value("--sampling", foveation(&FoveationSettings::sampling), names_of_samplings(), Touch::sampling,
-                 "Where samples go: the same everywhere; in three regions about the gaze; by --density; or where a "
-                 "pilot of the frame finds noise. The paper's readings are regions:shape=disc or disc-by-radius, and "
-                 "regions:unit=pixel. Where nothing names one, --target-jod and --target-relmse take adaptive, and "
-                 "what is "
-                 "said of regions takes regions")
+          .value(
+              "--sampling", foveation(&FoveationSettings::sampling), names_of_samplings(), Touch::sampling,
+              "Distribution of samples: uniform; in three regions about the gaze; by --density; or adaptive, where a "
+              "pilot of the frame finds noise. The paper's readings are regions:shape=disc or disc-by-radius, and "
+              "regions:unit=pixel. Without it, --target-jod and --target-relmse take adaptive, and options of "
+              "regions take regions")
           .with(Trait::always_stated)
           .idle_when({without_any_gaze})
           .with(Trait::everyday);
   within_sampling(sampling, sampling_type());
   schema
       .value("--spp", foveation(&FoveationSettings::spp), "SAMPLES", Touch::sampling,
-             "Samples a pixel on average over a frame, whatever the sampling; a fraction is possible. Where it is not "
-             "given, regions have their own counts, pictures state theirs, densities about the gaze have 2, and all "
+             "Samples a pixel on average over a frame, with any sampling; a fraction is possible. Without it, "
+             "regions have their own counts, pictures state theirs, densities about the gaze have 2, and all "
              "else has 32")
       .above(0, kMostSamples)
       .with(Trait::everyday);

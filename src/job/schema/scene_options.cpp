@@ -17,8 +17,8 @@ void add_scene_options(JobSchema& schema) {
   schema
       .value("--env", &JobSettings::environment, "FILE|sky|soft-sky|constant:R,G,B|none|auto", Touch::light,
              "Light from all around: a lat-long .hdr or .exr, the built-in clear sky with its sun, one without a sun "
-             "(soft-sky), a constant radiance, or none; auto is what the scene names in its extras, else the sky for a "
-             "scene without light of its own, otherwise none")
+             "(soft-sky), a constant radiance, or none. auto: the environment that the scene names in its extras, else "
+             "the sky if the scene has no light of its own, else none")
       .decides_by_file()
       .with(Trait::everyday);
   schema.value("--env-rotation", &JobSettings::environment_rotation_deg, "DEG", Touch::light,
@@ -49,8 +49,9 @@ void add_limit_options(JobSchema& schema) {
       .with(Trait::one_run);
   schema
       .value("--max-memory", &JobSettings::max_memory, "BYTES", Touch::scene,
-             "Refuses a scene that will take more memory, before it is loaded: 8G, 500M; 0: three quarters of what the "
-             "machine has. So are frames whose windows take more (--accumulate). Nodes, and pictures beyond 200 times "
+             "Refuses a scene that will take more memory, before it is loaded: 8G, 500M; 0: three quarters of the "
+             "machine's memory. Frames whose windows take more (--accumulate) are refused, too. Nodes, and pictures "
+             "beyond 200 times "
              "their file, may take a sixteenth of it. 'gazetrace "
              "scene FILE --estimate' says how much a scene will take")
       .decides_nothing();

@@ -7,9 +7,10 @@ OptionSchema<ScreenSettings> screen_schema() {
   OptionSchema<ScreenSettings> schema;
   schema.group("Screen (where the eye is)");
   schema
-      .value("--screen", &ScreenSettings::name, "NAME|FILE", Touch::screen,
-             "A known screen and its distance ('gazetrace list screens'), or a .json file; default: what the gaze log "
-             "states")
+      .value(
+          "--screen", &ScreenSettings::name, "NAME|FILE", Touch::screen,
+          "A known screen and its distance ('gazetrace list screens'), or a .json file; default: that of the gaze log"
+          "")
       .with(Trait::everyday);
   schema.value("--screen-px", &ScreenSettings::size_px, "W,H", Touch::screen, "Resolution of the screen");
   schema.value("--screen-cm", &ScreenSettings::size_cm, "W,H", Touch::screen,
@@ -29,7 +30,7 @@ OptionSchema<ScreenSettings> screen_schema() {
 void add_screen_options(JobSchema& schema) {
   schema.include(screen_schema(), &JobSettings::screen);
   schema.value("--recording-screen", &JobSettings::recording_screen, "NAME|FILE", Touch::screen,
-               "The screen of the recording, where it is another one than --screen; default: what the gaze log states");
+               "The screen of the recording, if it differs from --screen; default: that of the gaze log");
   schema.value("--gaze-transfer", &JobSettings::gaze_transfer, choices<GazeTransfer>(), Touch::screen,
                "How gaze is carried from the recording's screen to another: its place on the screen stays the same "
                "(fraction), or its angle does; needed where the angular sizes of the screens differ by more than 2 %");

@@ -30,7 +30,7 @@ void add_light_path_options(JobSchema& schema) {
       .with(Trait::always_stated);
   schema
       .value("--light-sampling", trace(&TraceSettings::light_sampling), choices<LightSampling>(), Touch::tracing,
-             "What is sampled at a hit: lights and surface together (mis), or one of them alone")
+             "Samples at a hit: of lights and surface together (mis), or of one of them alone")
       .with(Trait::trade_off)
       .with(Trait::always_stated);
   schema

@@ -63,31 +63,31 @@ double wanted_reference(const WindowClip& clip, double seen) {
 
 std::string ClipRate::text() const {
   return fmt::format(
-      "{:.6g} samples a pixel{}, expected to reach {:.3f} JOD: by {} looks at {}, beside {:.0f} samples a "
+      "{:.6g} samples a pixel{}, expected to reach {:.3f} JOD: by {} probe renders of {}, beside {:.0f} samples a "
       "pixel on average{}",
       spp, is_least ? ", the least there is" : "", predicted_jod, looks, looked_at, reference_spp,
-      scatter_jod > 0 ? fmt::format("; looks differ by {:.3f} JOD", scatter_jod) : "");
+      scatter_jod > 0 ? fmt::format("; probe renders differ by {:.3f} JOD", scatter_jod) : "");
 }
 
 std::vector<std::string> ClipRate::doubts() const {
   std::vector<std::string> doubts;
   if (!settled) {
-    doubts.push_back(
-        fmt::format("the rate for a stated quality did not settle in {} looks: at {:.3g} samples a pixel the sequence "
-                    "may be worse or better than stated",
-                    looks, spp));
+    doubts.push_back(fmt::format(
+        "the rate for a stated quality did not settle in {} probe renders: at {:.3g} samples a pixel the sequence "
+        "may be worse or better than stated",
+        looks, spp));
   }
   if (reference_share > kMostOfReference) {
     doubts.push_back(fmt::format(
-        "`target-jod`: what the sequence was judged by, {:.0f} samples a pixel on average, is still seen to be noisy: "
+        "`target-jod`: the reference of the probe renders, {:.0f} samples a pixel on average, is still visibly noisy: "
         "the sequence may be worse than stated",
         reference_spp));
   }
   if (looked_at_whole && scatter_jod > kMostScatterJod) {
     doubts.push_back(fmt::format(
-        "`target-jod`: what is seen of these frames differs by {:.2f} JOD (one standard deviation) from one "
-        "rendering to the next: the score of a still misses what was stated by about as much, that of a sequence by up "
-        "to that; larger frames differ less",
+        "`target-jod`: scores of these frames differ by {:.2f} JOD (one standard deviation) from one "
+        "rendering to the next: a still misses the stated score by about as much, a sequence by up to that; larger "
+        "frames differ less",
         scatter_jod));
   }
   return doubts;
@@ -129,8 +129,8 @@ ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSe
     }
     if (result.spp > (is_last ? 1 : 2) * most) {
       throw Error(ErrorKind::usage, "`target-jod`",
-                  fmt::format("{} JOD would take about {:.3g} samples a pixel, by what {} {} saw; `max-spp` is {:g}",
-                              target, result.spp, result.looks, result.looks == 1 ? "look" : "looks", most),
+                  fmt::format("{} JOD would take about {:.3g} samples a pixel, by {} probe {}; `max-spp` is {:g}",
+                              target, result.spp, result.looks, result.looks == 1 ? "render" : "renders", most),
                   result.spp > least ? "ask for less, or raise `max-spp`" : "raise `max-spp`: fewer are not possible");
     }
     if (is_last) {

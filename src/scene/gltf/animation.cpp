@@ -68,7 +68,7 @@ RawTrack read_raw_track(const GltfDocument& document, std::size_t animation, int
   const auto same = std::adjacent_find(track.times_ns.begin(), track.times_ns.end());
   if (same != track.times_ns.end()) {
     warnings.push_back(place + ".input: key " + std::to_string(same - track.times_ns.begin() + 1) +
-                       " has the time of the one before it; what it moves jumps there");
+                       " has the time of the one before it; its target jumps there");
   }
   track.values = read_floats(document, sampler.output, components, place + ".output");
   const std::size_t a_key = (track.interpolation == KeyInterpolation::cubic_spline ? 3 : 1) * width;

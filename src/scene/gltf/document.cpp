@@ -329,7 +329,7 @@ GltfDocument parse_gltf(const std::string& path, const CheckedGltf& checked) {
     parsed = parser.LoadASCIIFromString(&model, &problem, &warning, checked.json.data(),
                                         static_cast<unsigned int>(checked.json.size()), "");
   } catch (const std::bad_alloc&) {
-    throw Error(ErrorKind::runtime, path, "there is no memory for what its JSON says", "make the scene smaller");
+    throw Error(ErrorKind::runtime, path, "there is not enough memory for its JSON", "make the scene smaller");
   } catch (const std::exception& error) {
     problem = error.what();
   }

@@ -39,7 +39,7 @@ const char* shown_without(std::string_view extension) {
   constexpr const char* kNothingMoved = "nothing is moved by it";
   static constexpr std::array<std::pair<std::string_view, const char*>, 25> kShown{{
       {"KHR_materials_variants", "materials are those that stand without a choice"},
-      {"KHR_node_visibility", "what it hides is left out, and stays so"},
+      {"KHR_node_visibility", "hidden nodes are left out for good"},
       {"MSFT_lod", "the finest level is shown"},
       {"CESIUM_primitive_outline", "outlines are not drawn"},
       {"KHR_xmp", kNothingDrawn},
@@ -54,8 +54,8 @@ const char* shown_without(std::string_view extension) {
       {"FB_ngon_encoding", kNothingDrawn},
       {"AGI_stk_metadata", kNothingDrawn},
       {"GODOT_single_root", kNothingDrawn},
-      {"VRM", "it is shown as glTF, without what VRM adds"},
-      {"VRMC_vrm", "it is shown as glTF, without what VRM adds"},
+      {"VRM", "it is shown as glTF, without VRM's additions"},
+      {"VRMC_vrm", "it is shown as glTF, without VRM's additions"},
       {"AGI_articulations", kNothingMoved},
       {"KHR_interactivity", kNothingMoved},
       {"KHR_physics_rigid_bodies", kNothingMoved},

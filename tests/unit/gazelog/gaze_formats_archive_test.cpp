@@ -138,7 +138,7 @@ TEST_F(GazeFormats, XdfHasOneHeaderAStream) {
                      "<channel><label>Screen_X</label></channel><channel><label>Screen_Y</label></channel>"
                      "</channels></desc></info>");
   const GazeLog mended = read("again.xdf", again.bytes);
-  EXPECT_THAT(mended.warnings.at(0), HasSubstr("1 damaged or cut off chunk; what could be read is used"));
+  EXPECT_THAT(mended.warnings.at(0), HasSubstr("1 damaged or cut off chunk; the readable part is used"));
   ASSERT_EQ(mended.samples.size(), 40U);
   EXPECT_EQ(mended.samples[39].u, 0.25 + 39.0 / 256);
   EXPECT_EQ(mended.samples[39].t_ns, log.samples[39].t_ns);

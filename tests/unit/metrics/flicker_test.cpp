@@ -217,8 +217,8 @@ TEST(FlickerRange, IsToldInWords) {
   FlickerRange range{1, 12, 53.4};
   EXPECT_EQ(
       flicker_range_text(range),
-      "from 1 to 12 Hz, over the second up to each frame; flicker of up to 53 Hz would be visible, but what is faster "
-      "than 12 Hz cannot be measured at this frame rate: it appears as something slower, or not at all");
+      "from 1 to 12 Hz, over the second up to each frame; flicker of up to 53 Hz would be visible, but flicker above "
+      "12 Hz cannot be measured at this frame rate: it appears slower, or not at all");
   range.highest_hz = 60;
   EXPECT_EQ(
       flicker_range_text(range),

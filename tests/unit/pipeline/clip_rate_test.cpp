@@ -36,14 +36,14 @@ TEST(ClipRate, ANoisyReferenceLeavesADoubt) {
 TEST(ClipRate, ARateThatDidNotSettleLeavesADoubt) {
   ClipRate rate = rate_of_windows();
   rate.settled = false;
-  EXPECT_THAT(rate.doubts(), ElementsAre(AllOf(HasSubstr("4 looks"), HasSubstr("40 samples"))));
+  EXPECT_THAT(rate.doubts(), ElementsAre(AllOf(HasSubstr("4 probe renders"), HasSubstr("40 samples"))));
 }
 
 TEST(ClipRate, SmallFramesWhoseLooksDifferLeaveADoubtAndWindowsOfLargeOnesDoNot) {
   ClipRate rate = rate_of_windows();
   rate.scatter_jod = 1.5 * kMostScatterJod;
   EXPECT_THAT(rate.doubts(), IsEmpty());
-  EXPECT_THAT(rate.text(), HasSubstr("looks differ by 0.120 JOD"));
+  EXPECT_THAT(rate.text(), HasSubstr("probe renders differ by 0.120 JOD"));
   rate.looked_at_whole = true;
   EXPECT_THAT(rate.doubts(), ElementsAre(AllOf(HasSubstr("`target-jod`"), HasSubstr("0.12 JOD"))));
   rate.scatter_jod = kMostScatterJod;

@@ -108,11 +108,11 @@ Command add_gaze_events_command(CLI::App& app, const Invocation& /*invocation*/)
   schema.group("Events");
   schema.value(
       "--method", &EventsArguments::method, "NAME",
-      "A method with its published constants ('gazetrace list event-methods'), or log: what the log itself says "
-      "of its events; auto: ivt on a screen, ivt-hmd in a headset, ivt-attention without a head pose");
+      "A method with its published constants ('gazetrace list event-methods'), or log: the events that the log "
+      "itself states; auto: ivt on a screen, ivt-hmd in a headset, ivt-attention without a head pose");
   schema.value(
       "--device", &EventsArguments::device, "desktop|head-mounted",
-      "What it was recorded on, where places or directions do not tell: gaze in degrees from a desktop tracker");
+      "The device of the recording, where places or directions do not tell it: gaze in degrees from a desktop tracker");
   schema.flag("--binocular", &EventsArguments::binocular,
               "Of a log of both eyes: the events of the left eye, of whose saccades and microsaccades only those stay "
               "that overlap one of the right eye (Engbert & Kliegl 2003)");

@@ -58,7 +58,7 @@ std::vector<BidsLeftover> removable_leftovers(const std::vector<std::string>& wr
     throw Error(ErrorKind::input, arguments.output,
                 fmt::format("beside it lies, and would be read with it: {}",
                             file_names(reads_itself || foreign.empty() ? leftovers : foreign)),
-                reads_itself       ? "it is what is converted: give another name"
+                reads_itself       ? "it is the input: give another name"
                 : !foreign.empty() ? "gazetrace did not write that: move it away, or give another name"
                                    : "give --overwrite, which removes it, or another name");
   }

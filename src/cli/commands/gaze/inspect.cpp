@@ -60,10 +60,10 @@ Command add_gaze_inspect_command(CLI::App& app, const Invocation& /*invocation*/
   const auto options = std::make_shared<CommandOptions<InspectArguments>>(std::move(schema));
   options->bind(app, *arguments);
   app.add_option("log", arguments->gaze.path, "Gaze log")->required()->type_name("FILE");
-  app.add_option("--save-columns", arguments->save_columns, "Writes what was declared of the columns as a column map")
+  app.add_option("--save-columns", arguments->save_columns, "Writes the given options of columns as a column map")
       ->type_name("MAP.json");
   app.add_flag("--keep-ids", arguments->keep_ids,
-               "Also shows what can identify a person or a session, such as times of day; left out otherwise");
+               "Also shows data that can identify a person or a session, such as times of day; left out otherwise");
   add_json_option(app, arguments->json);
   return {[arguments, options] { return run_inspect(*arguments); }, {}};
 }

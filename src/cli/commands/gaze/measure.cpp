@@ -72,7 +72,7 @@ Command add_gaze_measure_command(CLI::App& app, const Invocation& /*invocation*/
       "--method", at(&MeasureArguments::measure, &GazeMeasureSettings::method), "NAME",
       "A method with its published constants ('gazetrace list event-methods'), or log; auto: as 'gaze events'");
   schema.value("--device", at(&MeasureArguments::measure, &GazeMeasureSettings::device), "desktop|head-mounted",
-               "What it was recorded on, where places or directions do not tell");
+               "The device of the recording, where places or directions do not tell it");
   schema.include(gaze_choice_schema(), &MeasureArguments::gaze);
   schema.include(screen_schema(), &MeasureArguments::screen);
   schema.include(gaze_process_schema().with_headings([](const Option&) { return "Processing"; }),
@@ -86,10 +86,10 @@ Command add_gaze_measure_command(CLI::App& app, const Invocation& /*invocation*/
   app.add_option(
          "--pupil-distance", arguments->measure.pupil_distance_mm,
          "How far the pupils are apart, for the vergence of gaze on a screen and for where lines of sight meet; "
-         "default: what the log says of the places of the eyes")
+         "default: from the places of the eyes in the log")
       ->type_name("MM");
   app.add_flag("--keep-ids", arguments->measure.keep_ids,
-               "Keeps what can identify a person or a session, such as times of day");
+               "Keeps data that can identify a person or a session, such as times of day");
   add_json_option(app, arguments->json);
   return {[arguments, options] { return run_gaze_measure(*arguments); }, {}};
 }

@@ -76,7 +76,7 @@ Command add_gaze_synth_command(CLI::App& app, const Invocation& /*invocation*/) 
   const auto options = std::make_shared<CommandOptions<SynthArguments>>(std::move(schema));
   options->bind(app, *arguments);
   app.add_option("-o,--output", arguments->output, "gazetrace CSV")->required()->type_name("OUT.csv");
-  app.add_option("--truth", arguments->truth, "What really happened, as 'gaze events' writes it: .tsv or .json")
+  app.add_option("--truth", arguments->truth, "The true events, in the format of 'gaze events': .tsv or .json")
       ->type_name("FILE");
   add_json_option(app, arguments->json);
   return {[arguments, options] { return run_synth(*arguments); }, {}};
