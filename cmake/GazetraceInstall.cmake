@@ -11,6 +11,7 @@ if(TARGET gazetrace_cli)
   set(shell_dir ${PROJECT_BINARY_DIR}/shell)
   file(MAKE_DIRECTORY ${shell_dir})
   add_custom_command(OUTPUT ${shell_dir}/made
+    COMMAND ${CMAKE_COMMAND} -E rm -rf man1 gz  # pages of commands that are gone
     COMMAND gazetrace_cli man --folder ${shell_dir}/man1
     COMMAND gazetrace_cli completion bash > ${shell_dir}/gazetrace
     COMMAND gazetrace_cli completion zsh > ${shell_dir}/_gazetrace

@@ -2,6 +2,8 @@
 """What the numbers say: tables of comparisons, and sentences. Two values count as different where their intervals do not
 overlap, which is stricter than a test of their difference."""
 
+import math
+
 import pandas
 
 from . import words
@@ -72,13 +74,13 @@ def losses(compared):
 
 def least_flattering(compared):
     """Of whole frames beside uniform sampling of the same cost, the comparison in which foveation does worst: by how much of the
-    widths of both intervals it is better."""
+    widths of both intervals it is better. None where no comparison has both intervals."""
     def gain(row):
-        width = sum(estimate.high - estimate.low for estimate in (row.ours, row.theirs) if estimate.low is not None)
+        width = sum(estimate.high - estimate.low for estimate in (row.ours, row.theirs))
         better_by = row.theirs.mean - row.ours.mean if row.lower else row.ours.mean - row.theirs.mean
-        return better_by / width if width > 0 else 0.0
+        return better_by / width if width > 0 else math.copysign(math.inf, better_by) if better_by else 0.0
 
-    whole = [row for row in compared.itertuples() if row.part == "whole"]
+    whole = [row for row in compared.itertuples() if row.part == "whole" and None not in (row.ours.low, row.theirs.low)]
     return min(whole, key=gain) if whole else None
 
 
@@ -95,7 +97,7 @@ def headline(results, compared):
         undecided = counts.get("not told apart", 0) + counts.get("under the reference's noise", 0)
         text += (f" Over whole frames, beside uniform sampling of the same cost, they scored better in {counts.get('better', 0)} of {counts.sum()} comparisons, "
                  f"worse in {counts.get('worse', 0)}, and not told apart in {undecided}.")
-        least = least_flattering(compared)
+    if least := least_flattering(compared):
         text += (f" The least flattering: {least.metric} {words.with_interval(least.ours)} beside {words.with_interval(least.theirs)}, "
                  f"{beside(least.baseline)}; {words.place(*least.test.place)}.")
     if not all(speed.tells for speed in speeds):

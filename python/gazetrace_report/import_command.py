@@ -71,19 +71,20 @@ def blender():
 def read(bpy, path):
     """Replaces what is open in Blender by the file."""
     suffix = path.suffix.lower()
+    whole = str(path.resolve())  # Blender takes relative paths from $PWD, which may be another folder
     if not path.is_file():
         raise Error(f"{path}: is not a file", "input")
     if suffix != ".blend" and suffix not in READERS:
         raise Error(f"{path}: is none of .blend, {', '.join(READERS)}; save it as one of them", "input")
     try:
         if suffix == ".blend":
-            bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=False, use_scripts=False)
+            bpy.ops.wm.open_mainfile(filepath=whole, load_ui=False, use_scripts=False)
             return
         bpy.ops.wm.read_factory_settings(use_empty=True)
         for name, options in READERS[suffix]:
             group, _, operator = name.partition(".")
             if operator in dir(getattr(bpy.ops, group)):
-                if getattr(getattr(bpy.ops, group), operator)(filepath=str(path), **options) != {"FINISHED"}:
+                if getattr(getattr(bpy.ops, group), operator)(filepath=whole, **options) != {"FINISHED"}:
                     raise RuntimeError("Blender's importer gave up")
                 break
         else:

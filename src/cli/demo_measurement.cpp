@@ -25,6 +25,8 @@ std::vector<std::int32_t> frame_numbers(const Job& job, const std::string& frame
 constexpr int kMeasuredWidthPx = 320;
 constexpr double kMeasuredFrames = 4;
 constexpr double kMeasuredSpp = 250;  // of reference, settings, baselines and repeats, about
+// The time of the shipped measurement over that of the example's frame by itself, as measured on two cores.
+constexpr double kShippedFrames = 80;
 
 // One option with its value as a line of TOML, without the help; files by their whole names.
 std::string option_line(const Job& job, const Option& option) {
@@ -46,13 +48,18 @@ std::int32_t middle_frame(const Job& job, const std::string& frames) {
   return numbers[numbers.size() / 2];
 }
 
-std::string estimate_text(const Job& job, const std::string& frames, const FirstFrame& first, bool with_sweep) {
+double own_sweep_s(const Job& job, const FirstFrame& first) {
+  const double smaller = std::min(1.0, static_cast<double>(kMeasuredWidthPx) / job.settings.size.width);
+  return kMeasuredFrames * smaller * smaller * kMeasuredSpp / std::max(first.spp, 0.1) * first.seconds;
+}
+
+double shipped_sweep_s(const FirstFrame& first) {
+  return kShippedFrames * first.seconds;
+}
+
+std::string estimate_text(const Job& job, const std::string& frames, const FirstFrame& first, double sweep_s) {
   constexpr double kJoining = 1.3;  // a window's frames are joined, and some lie outside of the range
   const double sequences_s = 2 * static_cast<double>(frame_numbers(job, frames).size()) * first.seconds * kJoining;
-  const SizePx& size = job.settings.size;
-  const double smaller = std::min(1.0, static_cast<double>(kMeasuredWidthPx) / size.width);
-  const double sweep_s =
-      with_sweep ? kMeasuredFrames * smaller * smaller * kMeasuredSpp / std::max(first.spp, 0.1) * first.seconds : 0.0;
   return fmt::format("\nThis frame took {} with {:.2f} samples a pixel, so that all will take about {}{}.\n",
                      duration_text(first.seconds), first.spp, duration_text(sequences_s + sweep_s),
                      job.settings.frames || !frames.empty() ? "" : " for each frame");

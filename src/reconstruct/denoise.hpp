@@ -7,10 +7,10 @@
 namespace gazetrace {
 
 // Where a part of the pixels has this many samples, the network runs twice: over the frame, and with less work (2.6 for
-// 6.3 us a pixel) over one half of its samples. Beyond the network's picture of that half, both halves have noise that
-// is independent, and all that the network left out. In two bands of coarseness, the finer of which ends at kCoarsePx,
-// the share by which the halves agree around a pixel is given back to it. With many samples the picture so becomes
-// their mean, but for single pixels that without_outliers() dims.
+// 6.3 us a pixel by version 2.5.1) over one half of its samples. Beyond the network's picture of that half, both halves
+// have noise that is independent, and all that the network left out. In two bands of coarseness, the finer of which
+// ends at kCoarsePx, the share by which the halves agree around a pixel is given back to it. With many samples the
+// picture so becomes their mean, but for single pixels that without_outliers() dims.
 inline constexpr float kSamplesOfBlend = 16;
 inline constexpr int kCoarsePx = 8;
 

@@ -108,7 +108,7 @@ class FieldCases(ReadingTest):
     def p03_ego4d_gaze(self):
         "the named time column counts; a scene camera's picture from the bottom left"
         return self.says(self.inspect("p03_ego4d_gaze.csv", "--time-column", "canonical_timestamp_s"),
-                         ["scene camera", "bottom-left"], ["there is no column"])
+                         ["scene camera", "bottom-left"], ["there is no column", "--frame head"])
 
     def t01_clock_starts_anew(self):
         "the clock starts again in line 226; never --gaze-sort"

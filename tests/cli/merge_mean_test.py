@@ -152,7 +152,7 @@ class MergeMean(harness.CliTest):
                                ([a, bounces], ["other settings"]), ([a, short], ["lack frames 10", "--allow-missing"]),
                                (["mean/f.####.exr", b], ["seed 2"]), (unstated, ["how many samples", "--aov samples"]),
                                ([a], ["two renders"]), ([a, b], ["exists already", "--resume"]), ([a, "none/f.####.exr"], ["none"]),
-                               ([a, "a/map.####.exr"], ["map.0009.exr", "estimate"])):
+                               ([a, "a/map.####.exr"], ["map.0009.exr", "does not state the job"])):
             out = "mean" if words[0].startswith("exists") else "out"
             with self.subTest(renders=renders):
                 self.assert_refused(["merge", "--mean", *renders, "-o", f"{out}/f.####.exr"], words)

@@ -15,7 +15,7 @@ class Paper(harness.CliTest):
         (self.folder / "data").mkdir()
         (self.folder / "data/sponza").symlink_to(harness.SHARED / "scenes/sponza")
         (self.folder / "data/kiara_1_dawn_1k.hdr").symlink_to(harness.SHARED / "hdri/kiara_1_dawn_1k.hdr")
-        words = ["--data", "data", "--program", harness.PROGRAM, "--size", "64x36", "--seconds", "60", "--error-size", "64x36",
+        words = ["--data", "data", "--program", harness.PROGRAM, "--size", "64x36", "--seconds", "0", "--error-size", "64x36",
                  "--reference-spp", "16", "--seeds", "1", "--scenes", "sponza", "-o", "page.md"]
         done = subprocess.run([sys.executable, "-B", str(harness.SOURCE / "examples/paper.py"), *words], cwd=self.folder,
                               capture_output=True, text=True, check=False)

@@ -462,6 +462,19 @@ class Findings(reports.ReportTest):
         self.assertTrue(findings.tally(self.compared(*rows)).empty)
         self.assertRegex("\n".join(findings.caveats(self.read(results(*rows)))), "no metric has a score")
 
+    def test_the_least_flattering_has_both_intervals(self):
+        least = lambda *rows: findings.least_flattering(self.compared(*rows))
+        ours = row("t", "test", estimate(0.12, 0.11, 0.13))
+        near, far = row("a", "equal-time", estimate(0.13, 0.12, 0.14)), row("b", "equal-samples", estimate(0.2, 0.19, 0.21))
+        exact = row("c", "low-resolution", estimate(0.11, 0.11, 0.11))
+        bare = row("d", "low-resolution", {**estimate(0.01, 0.01, 0.01), "low": None, "high": None})  # one repeat
+        self.assertEqual(least(ours, near, far).baseline.id, "a")
+        self.assertEqual(least(ours, near, bare).baseline.id, "a")
+        self.assertIsNone(least(ours, bare))
+        ours["scores"]["flip"]["whole"] = estimate(0.12, 0.12, 0.12)
+        self.assertEqual(least(ours, near, exact).baseline.id, "c")  # a loss without any width
+        self.assertNotIn("least flattering", findings.headline(*(lambda read: (read, findings.comparisons(read)))(self.read(results(ours, bare)))))
+
     def test_speed_and_what_it_is_worth(self):
         slow = row("t", "test", estimate(0.1, 0.09, 0.11))
         said = lambda raw: "\n".join(findings.caveats(self.read(raw)))

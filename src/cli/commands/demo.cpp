@@ -185,7 +185,8 @@ int run_demo(const DemoArguments& arguments) {
     return code;
   }
   const FirstFrame first = first_frame_of(in("first.json"));
-  std::fputs(estimate_text(job, frames, first, !arguments.without_sweep).c_str(), stderr);
+  const double sweep_s = arguments.without_sweep ? 0 : is_own ? own_sweep_s(job, first) : shipped_sweep_s(first);
+  std::fputs(estimate_text(job, frames, first, sweep_s).c_str(), stderr);
   if (is_own && !arguments.without_sweep) {
     std::ofstream(plan) << measurement_of(job, middle);
   }

@@ -241,6 +241,9 @@ SynthGaze synthesize_gaze(const SynthSettings& settings) {
     const double sd = settings.noise_deg * kRadPerDeg;
     const TangentFrame frame(direction_in(phase, sample.t_ns));
     set_direction(sample, settings.kind, screen, frame.direction({wander.x + sd * error.x, wander.y + sd * error.y}));
+    if (sample.validity == GazeValidity::lost) {  // turned away: an eye that looks, at no place of the screen's plane
+      lose(sample, GazeValidity::off_screen, settings.kind);
+    }
     EyeMovement label = phase.movement;
     if (phase.movement == EyeMovement::blink) {
       lose(sample, GazeValidity::blink, settings.kind);

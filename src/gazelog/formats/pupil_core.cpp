@@ -80,11 +80,10 @@ RawGaze read_gaze_pupil_core(const GazeFile& file, const GazeReadOptions& option
   UsedColumns used(table);
   const CoreColumns c = find_columns(table, options, used);
   RawGaze raw = raw_of(file, "Pupil, arbitrary zero");
-  raw.way_out =
-      "export gaze on a surface (gaze_positions_on_surface_....csv), or take directions from the head "
-      "with `frame` head";
-  raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
   const bool by_eye = c.normal[0][0] && c.normal[1][0];
+  raw.way_out = "export gaze on a surface (gaze_positions_on_surface_....csv)";
+  raw.way_out += by_eye ? ", or take directions from the head with `frame` head" : "";
+  raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
   if (raw.kind == GazeKind::direction && !by_eye) {
     throw Error(ErrorKind::input, table.place,
                 "it has no directions (gaze_normal0_x, ...), only places on the scene picture",

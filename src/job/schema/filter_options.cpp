@@ -40,10 +40,9 @@ void add_filter_options(JobSchema& schema) {
   schema
       .value(
           "--filter", &JobSettings::filter, "NAME", Touch::filter,
-          "Fills pixels between samples and removes noise ('gazetrace list filters'). Where samples go is --density, "
-          "which "
-          "also has a 'linear'. auto: oidn where Open Image Denoise is found, else guided; linear, which keeps single "
-          "pixels, for uniform frames with --only-pixel")
+          "Fills pixels between samples and removes noise ('gazetrace list filters'). --density decides "
+          "where samples go; its 'linear' is another one. auto: oidn where Open Image Denoise is found, else guided; "
+          "linear, which keeps single pixels, for uniform frames with --only-pixel")
       .checked_by(check_filter_name)
       .with(Trait::always_stated)
       .with(Trait::everyday);

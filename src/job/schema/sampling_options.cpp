@@ -113,8 +113,8 @@ void add_sampling_choice(JobSchema& schema) {
           .value(
               "--density", at(&JobSettings::foveation, &SamplingSettings::unused_density), "NAME|FILE", Touch::sampling,
               "Density of samples over eccentricity: a model of acuity ('gazetrace list densities'), with its "
-              "parameters as "
-              "in mar:slope=0.0275; a CSV file with the columns ecc_deg,density; or an EXR file of samples a pixel (of "
+              "parameters as in mar:slope=0.0275; a CSV file with the columns ecc_deg,density; or an EXR file of "
+              "samples a pixel (of "
               "relative rates with --spp), stretched over the frame. #### in its name: a file for each frame. Chooses "
               "--sampling density")
           .decides_by_file()

@@ -9,8 +9,7 @@ OptionSchema<ScreenSettings> screen_schema() {
   schema
       .value(
           "--screen", &ScreenSettings::name, "NAME|FILE", Touch::screen,
-          "A known screen and its distance ('gazetrace list screens'), or a .json file; default: that of the gaze log"
-          "")
+          "A known screen and its distance ('gazetrace list screens'), or a .json file; default: that of the gaze log")
       .with(Trait::everyday);
   schema.value("--screen-px", &ScreenSettings::size_px, "W,H", Touch::screen, "Resolution of the screen");
   schema.value("--screen-cm", &ScreenSettings::size_cm, "W,H", Touch::screen,

@@ -63,10 +63,10 @@ double wanted_reference(const WindowClip& clip, double seen) {
 
 std::string ClipRate::text() const {
   return fmt::format(
-      "{:.6g} samples a pixel{}, expected to reach {:.3f} JOD: by {} probe renders of {}, beside {:.0f} samples a "
+      "{:.6g} samples a pixel{}, expected to reach {:.3f} JOD: by {} probe render{} of {}, beside {:.0f} samples a "
       "pixel on average{}",
-      spp, is_least ? ", the least there is" : "", predicted_jod, looks, looked_at, reference_spp,
-      scatter_jod > 0 ? fmt::format("; probe renders differ by {:.3f} JOD", scatter_jod) : "");
+      spp, is_least ? ", the least there is" : "", predicted_jod, looks, looks == 1 ? "" : "s", looked_at,
+      reference_spp, scatter_jod > 0 ? fmt::format("; probe renders differ by {:.3f} JOD", scatter_jod) : "");
 }
 
 std::vector<std::string> ClipRate::doubts() const {

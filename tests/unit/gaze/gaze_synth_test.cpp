@@ -13,6 +13,25 @@
 namespace gazetrace::gaze_synth_test {
 namespace {
 
+// A standard deviation of 60 degrees turns more than a tenth of the directions past 90 degrees: the eye looks, but at
+// no place of the screen's plane.
+TEST(GazeSynth, GazeThatIsTurnedAwayHasNoPlace) {
+  SynthSettings settings;
+  settings.display = {1920, 1080, 600, 400, 10, 0, 0};
+  settings.amplitude_deg = 30;
+  settings.noise_deg = 10;
+  std::size_t away = 0;
+  for (const GazeSample& sample : synthesize_gaze(settings).log.samples) {
+    EXPECT_NE(sample.validity, GazeValidity::lost);
+    EXPECT_EQ(std::isnan(sample.u), std::isnan(sample.v));
+    if (std::isnan(sample.u)) {
+      EXPECT_EQ(sample.validity, GazeValidity::off_screen);
+      ++away;
+    }
+  }
+  EXPECT_GT(away, 0U);
+}
+
 TEST(GazeSynth, SaccadesAreOnTheMainSequence) {
   SynthSettings settings;
   settings.rate_hz = 20'000;

@@ -102,6 +102,35 @@ TEST_F(Denoise, GivesBackToTheFewPixelsThatHaveManySamples) {
   EXPECT_EQ(denoised.pixels.back(), network.pixels.back());
 }
 
+// Of the pixels around the middle, without those next to it.
+double error_around_middle(const ImageRgb& picture, const ImageRgb& truth) {
+  double squares = 0;
+  int pixels = 0;
+  for (int y = -8; y <= 8; ++y) {
+    for (int x = -8; x <= 8; ++x) {
+      if (std::abs(x) > 3 || std::abs(y) > 3) {
+        const double off = static_cast<double>(picture(kSize / 2 + x, kSize / 2 + y).y) -
+                           static_cast<double>(truth(kSize / 2 + x, kSize / 2 + y).y);
+        squares += off * off;
+        ++pixels;
+      }
+    }
+  }
+  return std::sqrt(squares / pixels);
+}
+
+// A firefly of either half, in a pixel that is brighter in both, is no light that both have: the noise around it stays
+// away.
+TEST_F(Denoise, FireflyOfOneHalfGivesNoNoiseBack) {
+  for (std::size_t half = 0; half < 2; ++half) {
+    Picture picture = planted({.texture = 0, .noise = 0.1F});
+    picture.input.halves[half](kSize / 2, kSize / 2) = {30, 30, 30};
+    picture.input.halves[1 - half](kSize / 2, kSize / 2) = {1, 1, 1};
+    picture.input.radiance(kSize / 2, kSize / 2) = {15.5F, 15.5F, 15.5F};
+    EXPECT_LT(error_around_middle(denoise(picture.input, 2), picture.truth), 0.2 * 0.1) << half;
+  }
+}
+
 TEST_F(Denoise, ThreadsChangeNoBit) {
   const Picture picture = planted({.texture = 0.05F, .noise = 0.05F});
   EXPECT_EQ(denoise(picture.input, 1), denoise(picture.input, 2));
