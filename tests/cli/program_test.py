@@ -303,7 +303,7 @@ class Talk(harness.CliTest):
         self.assert_refused(["render", "box.gltf", "-o", "f.exr", "--filter", "quadric"], ["filter", "give --density"])
         self.assert_refused(["render", "box.gltf", "-o", "f.exr", "--density", "guided"], ["density", "give one of these"])
         text = " ".join(self.run_ok("render", "--help-all").stdout.split())
-        self.assertIn("Where samples go is --density, which also has a 'linear'", text)
+        self.assertIn("--density decides where samples go; its 'linear' is another one", text)
 
     def test_each_aov_is_described(self):
         members = json.loads(self.run_ok("list", "aovs", "--json").stdout)["aovs"]
