@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What Blender's importers leave out or guess of materials: pictures that are not there, and the gloss of older models of surfaces."""
+"""What Blender's importers leave out or guess of materials: files that are not there, and the gloss of older models of surfaces."""
 
+import os
 import re
 from pathlib import Path
 
@@ -11,7 +12,8 @@ NEUTRAL_K = 6500
 def settle(bpy, path):
     """Gives materials the gloss that the file states, where Blender's importer did not; what stays lost, in a sentence each."""
     suffix = path.suffix.lower()
-    lost = missing_pictures(bpy, path)
+    lost = lost_obj_materials(path) if suffix == ".obj" else []
+    lost += missing_pictures(bpy, path)
     if suffix == ".fbx":
         lost += settle_fbx_gloss(bpy, path)
     if suffix.startswith(".usd"):
@@ -23,23 +25,67 @@ def settle(bpy, path):
 
 
 def missing_pictures(bpy, path):
-    """Pictures that the file names and that do not lie there."""
-    if path.suffix.lower() != ".obj":
-        absent = {image.filepath for image in bpy.data.images if image.source == "FILE" and image.packed_file is None
-                  and not Path(bpy.path.abspath(image.filepath, library=image.library)).is_file()}
-    else:  # Blender's importer does not keep what it cannot load
-        absent = set()
-        for library in re.findall(r"^mtllib\s+(.+?)\s*$", path.read_text(errors="replace"), re.MULTILINE):
-            file = path.parent / library
-            if not file.is_file():
-                absent.add(library)
-                continue
-            for words in re.findall(r"^\s*(?:map_\w+|bump|disp|norm|refl)\s+(.+?)\s*$", file.read_text(errors="replace"), re.MULTILINE):
-                # Options with values of their own stand before the name, which may have spaces.
-                names = [words.split(None, skipped)[-1] for skipped in range(len(words.split()))]
-                if not any((file.parent / name.replace("\\", "/")).is_file() for name in names):
-                    absent.add(words)
-    return [f"Picture '{name}' is not there: its material is without it." for name in sorted(absent)]
+    """Pictures that something uses and that Blender could not load. Its importers keep the name of what they did not find."""
+    sentences = set()
+    for image in bpy.data.images:
+        is_used = image.users > image.use_fake_user  # a fake user keeps what nothing else holds
+        if image.source not in ("FILE", "TILED") or not is_used or not image.filepath or image.packed_file is not None:
+            continue
+        files = files_of(bpy, image)
+        absent = [file for file in files if not os.path.isfile(file)]
+        # The exporter drops a picture without pixels, too.
+        unread = files[:1] if not absent and image.source == "FILE" and 0 in image.size else []
+        sentences.update(f"Picture '{shown(file, path)}' is not there and is left out." for file in absent)
+        sentences.update(f"Picture '{shown(file, path)}' cannot be read and is left out." for file in unread)
+    return sorted(sentences)
+
+
+def files_of(bpy, image):
+    """The file of an image, or of each tile."""
+    if image.source == "FILE":
+        return [image.filepath_from_user()]
+    pattern = bpy.path.abspath(image.filepath, library=image.library)
+    return [pattern.replace("<UDIM>", str(tile.number)) for tile in image.tiles]
+
+
+def shown(file, scene):
+    """A file's name as seen from the scene, where it lies below it."""
+    folder = os.path.join(os.path.abspath(scene.parent), "")
+    return os.path.abspath(file).removeprefix(folder)
+
+
+def lost_obj_materials(path):
+    """Materials that an OBJ uses and that no file defines of those that Blender reads: one a line, and that of the OBJ's own name."""
+    libraries, used = [], set()
+    for keyword, name in statements(path, "mtllib", "usemtl"):
+        if keyword == "usemtl":
+            used.add(name)
+        else:
+            libraries.append(name[1:-1] if len(name) > 2 and name[0] == name[-1] == '"' else name)
+    own = path.with_suffix(".mtl")
+    libraries += [own.name] if own.exists() else []
+    reasons = []
+    for library in dict.fromkeys(libraries):
+        file = Path(f"{path.parent}/{library}")  # Blender looks for /a.mtl there, too
+        if file.is_file():
+            used -= {name for _, name in statements(file, "newmtl")}
+            continue
+        for name in re.split(r"(?<=\.mtl)\s+", library, flags=re.IGNORECASE):
+            is_there = (path.parent / name).is_file()
+            reasons.append(f"Blender does not read '{name}', one of several in its line" if is_there else f"'{name}' is not there")
+    names = ", ".join(f"'{name}'" for name in sorted(used))
+    subject = f"Materials {names} are" if len(used) > 1 else f"Material {names} is"
+    return [f"{subject} left out: {'; '.join(reasons) or 'no file defines it'}."] if used else []
+
+
+def statements(path, *keywords):
+    """What stands behind keywords in the lines of a file that may be large."""
+    wanted = tuple(keyword.encode() for keyword in keywords)
+    with path.open("rb") as file:
+        for line in file:
+            words = line.split(None, 1) if line.lstrip().startswith(wanted) else []
+            if len(words) == 2 and words[0] in wanted:
+                yield words[0].decode(), words[1].strip().decode(errors="replace")
 
 
 def settle_fbx_gloss(bpy, path):
@@ -65,28 +111,35 @@ def settle_fbx_gloss(bpy, path):
 
 
 def fbx_surfaces(path):
-    """Who wrote the file, and of each material its model and its factor of gloss, None where it states none."""
+    """Who wrote the file, and of each material its model and its factor of gloss, None where it states none; nothing of a
+    file that Blender's importer has read and that cannot be read here."""
     data = path.read_bytes()
-    if data.startswith(b"Kaydara FBX Binary"):
-        from io_scene_fbx import parse_fbx  # Blender's own, beside its importer
-        try:
-            root, _ = parse_fbx.parse(str(path))
-        except (OSError, ValueError):
-            return "", {}
-        parts = {element.id: element for element in root.elems}
-        creator = parts[b"Creator"].props[0].decode(errors="replace") if b"Creator" in parts else ""
-        stated = {}
-        for material in parts[b"Objects"].elems if b"Objects" in parts else []:
-            if material.id == b"Material":
-                name = material.props[1].split(b"\0\1")[0].decode(errors="replace")
-                model = next((part.props[0].decode(errors="replace").lower() for part in material.elems if part.id == b"ShadingModel"), "")
-                values = [value.props for part in material.elems if part.id == b"Properties70" for value in part.elems]
-                stated[name] = model, next((props[4] for props in values if props[0] == b"SpecularFactor"), None)
-        return creator, stated
-    text = data.decode(errors="replace")
+    try:
+        return surfaces_of_binary_fbx(path) if data.startswith(b"Kaydara FBX Binary") else surfaces_of_fbx_text(data.decode(errors="replace"))
+    except Exception:  # Blender's parser checks little: damage shows itself as errors of struct, zlib, lists and others
+        return "", {}
+
+
+def surfaces_of_binary_fbx(path):
+    from io_scene_fbx import parse_fbx  # Blender's own, beside its older importer
+    root, _ = parse_fbx.parse(str(path))
+    parts = {element.id: element for element in root.elems}
+    creator = parts[b"Creator"].props[0].decode(errors="replace") if b"Creator" in parts else ""
+    stated = {}
+    for material in parts[b"Objects"].elems if b"Objects" in parts else []:
+        if material.id == b"Material":
+            name = material.props[1].split(b"\0\1")[0].decode(errors="replace")
+            model = next((part.props[0].decode(errors="replace").lower() for part in material.elems if part.id == b"ShadingModel"), "")
+            values = [value.props for part in material.elems if part.id == b"Properties70" for value in part.elems]
+            stated[name] = model, next((float(props[4]) for props in values if props[0] == b"SpecularFactor"), None)
+    return creator, stated
+
+
+def surfaces_of_fbx_text(text):
     creator = re.search(r'^\s*Creator:\s*"([^"]*)"', text, re.MULTILINE)
     stated = {}
-    for name, body in re.findall(r'^\tMaterial: [^"\n]*"Material::([^"]*)"[^{\n]*\{(.*?)^\t\}', text, re.MULTILINE | re.DOTALL):
+    # A material ends where a brace stands as deep as its name.
+    for _, name, body in re.findall(r'^([ \t]*)Material:[^"\n]*"Material::([^"]*)"[^{\n]*\{(.*?)^\1\}', text, re.MULTILINE | re.DOTALL):
         model = re.search(r'ShadingModel:\s*"(\w*)"', body)
         factor = re.search(r'"SpecularFactor"(?:\s*,\s*"[^"]*")*\s*,\s*([-+.\deE]+)', body)
         stated[name] = model[1].lower() if model else "", float(factor[1]) if factor else None

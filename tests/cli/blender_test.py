@@ -174,15 +174,41 @@ class Blender(harness.CliTest):
         self.write("s.obj", b"mtllib s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n")
         self.write("s.mtl", b"newmtl m\nKd 1 1 1\nmap_Kd -s 1 1 1 gone.png\n")
         told = json.loads(self.run_ok("import", "s.obj", "-o", "s.glb", "--json", environment=environment, alone=True).stdout)
-        self.assertIn("gone.png", " ".join(told["lost"]))
+        self.assertIn("Picture 'gone.png' is not there and is left out.", told["lost"])
         for name, model, factor, gloss, sentence in (("lambert", "lambert", 1, 0, False), ("dull", "phong", 0, 0, False), ("shiny", "phong", 0.3, 1, True)):
             with self.subTest(name):
                 self.write("s.fbx", FBX.format(model=model, factor=factor).encode())
                 told = json.loads(self.run_ok("import", "s.fbx", "-o", "s.glb", "--overwrite", "--json", environment=environment, alone=True).stdout)
                 self.assertEqual("guess" in " ".join(told["lost"]), sentence, told)
-                data = (self.folder / "s.glb").read_bytes()
-                document = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
-                self.assertEqual(document["materials"][0].get("extensions", {}).get("KHR_materials_specular", {}).get("specularFactor", 1), gloss)
+                self.assertEqual(self.document("s.glb")["materials"][0].get("extensions", {}).get("KHR_materials_specular", {}).get("specularFactor", 1), gloss)
+
+    @unittest.skipUnless("bpy" in HOSTS, "no Python with bpy is installed")
+    def test_pictures_of_an_obj_are_listed_where_the_import_is_without_them(self):
+        """Blender seeks a picture beside its MTL, too, takes quotes away, and reads the MTL of the OBJ's name whatever is named."""
+        environment = {"GAZETRACE_BPY_PYTHON": HOSTS["bpy"][0]}
+        self.write("wood.png", harness.png(2, 2, lambda x, y: (200, 100, 50)))
+        self.write("in/wood.png", harness.png(2, 2, lambda x, y: (200, 100, 50)))
+        self.write("damaged.png", b"nothing")
+        faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n"
+        picture = "Picture '{}' is not there and is left out."
+        for library, file, words, sentence in (
+                ("mtllib a.mtl", "a.mtl", '"wood.png"', None), ("mtllib a.mtl", "a.mtl", "/home/bob/tex/wood.png", None),
+                ("mtllib a.mtl", "a.mtl", "in\\wood.png", None), ("mtllib a.mtl", "a.mtl", "-s 2 2 2 -clamp on wood.png", None),
+                ("mtllib gone.mtl", "o.mtl", "wood.png", None), ("", "o.mtl", "gone.png", picture.format("gone.png")),
+                ("mtllib a.mtl", "a.mtl", "-bm 1 in/gone one.png", picture.format("in/gone one.png")),
+                ("mtllib a.mtl", "a.mtl", "damaged.png", "Picture 'damaged.png' cannot be read and is left out."),
+                ("mtllib gone.mtl", "a.mtl", "wood.png", "Material 'm' is left out: 'gone.mtl' is not there.")):
+            with self.subTest(f"{library} {words}"):
+                (self.folder / "o.mtl").unlink(missing_ok=True)
+                self.write(file, f"newmtl m\nKd 1 1 1\nmap_Kd {words}\n")
+                self.write("o.obj", f"{library}\n{faces}")
+                told = json.loads(self.run_ok("import", "o.obj", "-o", "o.glb", "--overwrite", "--json", environment=environment, alone=True).stdout)
+                self.assertEqual([line for line in told["lost"] if "left out" in line], [sentence] if sentence else [])
+                self.assertEqual("images" in self.document("o.glb"), sentence is None)
+
+    def document(self, name):
+        data = (self.folder / name).read_bytes()
+        return json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
 
     def cameras(self, scene, *options):
         told = self.run_ok("plan", scene, "--size", "64x36", "--fps", "24", "--frames", "1-5", *options, "--json", "-").stdout
