@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Area lights as meshes that shine, since glTF has lights without a size only: the same flux from the same surface. Suns
-with the strength that Cycles gives them."""
+with the strength and colour that Cycles gives them."""
 
 import math
 
@@ -34,14 +34,40 @@ def add_area_lights(glb: Glb, scene: bpy.types.Scene, matrices: dict[str, np.nda
 
 
 def set_suns(glb: Glb) -> None:
-    """Cycles multiplies a sun's strength by that of its node; Blender's exporter takes the node's alone where there is one,
-    and 5.2 gives one to every sun."""
+    """Cycles multiplies a sun's strength and colour by those of its node; Blender's exporter takes the node's alone where
+    there is one, and 5.2 gives one to every sun."""
     for entry in glb.document.get("extensions", {}).get("KHR_lights_punctual", {}).get("lights", []):
         sun = bpy.data.lights.get(entry.get("name", ""))
-        if entry["type"] == "directional" and sun is not None:
-            nodes = sun.node_tree.nodes if sun.use_nodes and sun.node_tree else ()
-            node = next((node.inputs["Strength"].default_value for node in nodes if node.type == "EMISSION"), 1.0)
-            entry["intensity"] = sun.energy * 2 ** getattr(sun, "exposure", 0.0) * node
+        shown = emission_shown(sun) if entry["type"] == "directional" and sun is not None else None
+        if shown is not None:
+            strength, colour = shown
+            entry["intensity"] = sun.energy * 2 ** getattr(sun, "exposure", 0.0) * strength
+            entry["color"] = [a * b for a, b in zip(colour_of(sun), colour)]
+
+
+def emission_shown(sun: bpy.types.SunLight) -> tuple[float, list[float]] | None:
+    """Strength and colour by which its nodes multiply its own: of the emission that the active output shows, none where it
+    shows nothing. None where other nodes compute them."""
+    if not sun.use_nodes or sun.node_tree is None:
+        return 1.0, [1.0, 1.0, 1.0]
+    output = sun.node_tree.get_output_node("CYCLES")
+    links = output.inputs["Surface"].links if output is not None else ()
+    while links and links[0].from_node.type == "REROUTE":
+        links = links[0].from_node.inputs[0].links
+    node = links[0].from_node if links else None
+    if node is None or (node.type == "EMISSION" and node.mute):
+        return 0.0, [1.0, 1.0, 1.0]
+    if node.type != "EMISSION" or node.inputs["Strength"].is_linked or node.inputs["Color"].is_linked:
+        return None
+    return node.inputs["Strength"].default_value, list(node.inputs["Color"].default_value)[:3]
+
+
+def colour_of(light: bpy.types.Light) -> list[float]:
+    """Of its light, with that of its temperature."""
+    colour = [float(part) for part in light.color]
+    if getattr(light, "use_temperature", False):
+        colour = [a * b for a, b in zip(colour, light.temperature_color)]
+    return colour
 
 
 def triangles_of(light: bpy.types.AreaLight) -> np.ndarray:
@@ -69,11 +95,8 @@ def radiance_of(light: bpy.types.AreaLight, area: float) -> list[float]:
     """Of a surface that sends the light's watts evenly to one side: flux / (pi area)."""
     watts = light.energy * 2 ** getattr(light, "exposure", 0.0)
     is_for_its_size = getattr(light, "normalize", True)  # else watts are those of a square metre
-    colour = [float(part) for part in light.color]
-    if getattr(light, "use_temperature", False):
-        colour = [a * b for a, b in zip(colour, light.temperature_color)]
     surface = area if is_for_its_size else 1.0
-    return [part * watts / (math.pi * surface) if surface > 0 else 0.0 for part in colour]
+    return [part * watts / (math.pi * surface) if surface > 0 else 0.0 for part in colour_of(light)]
 
 
 def append(glb: Glb, name: str, triangles: np.ndarray, matrix: np.ndarray, radiance: list[float]) -> None:
@@ -117,6 +140,8 @@ def lost_of_lights(scene: bpy.types.Scene) -> list[str]:
         animation = item.data.animation_data
         if animation is not None and (animation.action is not None or animation.drivers):
             sentences.append(f"The light of '{item.name}' stays as in the first frame.")
+        if item.data.type == "SUN" and emission_shown(item.data) is None:
+            sentences.append(f"Sun '{item.name}' has strength and colour as Blender's glTF exporter takes them: its nodes compute them.")
     return sentences
 
 

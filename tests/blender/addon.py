@@ -10,6 +10,7 @@ import tempfile
 import time
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 
 import bpy
 import mathutils
@@ -20,7 +21,7 @@ sys.path[:0] = [str(HERE), str(HERE.parents[1] / "blender")]
 
 import gazetrace_blender  # noqa: E402
 import scenes  # noqa: E402
-from gazetrace_blender import job, program, refusal, result, run, world  # noqa: E402
+from gazetrace_blender import job, lights, program, refusal, result, run, world  # noqa: E402
 
 PROGRAM = os.environ["GAZETRACE"]
 LOG = "# gazetrace-gaze 1\n# display_px 64 36\n# display_mm 640 360\n# distance_mm 600\nt[ns],u[1],v[1],valid,eye\n"
@@ -321,6 +322,41 @@ class Light(AddOnTest):
                 self.assertAlmostEqual(ours.max() / blender.max(), 1, delta=0.02)
         self.assertTrue((self.folder / "shot.gazetrace" / "world.exr").exists())
 
+    @staticmethod
+    def show_second_emission(lamp):
+        """Of 2 and coloured, through a point of the link; the first stays, of 5."""
+        lamp.use_nodes = True
+        tree = lamp.node_tree
+        tree.nodes["Emission"].inputs["Strength"].default_value = 5
+        shown, point = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new("NodeReroute")
+        shown.inputs["Strength"].default_value, shown.inputs["Color"].default_value = 2, (0.5, 1, 0.25, 1)
+        tree.links.new(shown.outputs["Emission"], point.inputs[0])
+        tree.links.new(point.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
+        return shown
+
+    def test_suns_by_nodes(self):
+        """An emission that nothing shows is dark, and a strength that is linked is the exporter's, which is said."""
+        def exported():
+            entry = {"type": "directional", "name": sun.name, "intensity": 7.0}
+            lights.set_suns(SimpleNamespace(document={"extensions": {"KHR_lights_punctual": {"lights": [entry]}}}))
+            return entry["intensity"]
+
+        self.empty_scene()
+        sun = bpy.data.lights.new("sun", "SUN")
+        sun.energy = 3
+        self.scene.collection.objects.link(bpy.data.objects.new("sun", sun))
+        self.assertEqual(exported(), 3)
+        shown = self.show_second_emission(sun)
+        self.assertEqual(exported(), 6)
+        self.assertEqual(lights.lost_of_lights(self.scene), [])
+        number = sun.node_tree.nodes.new("ShaderNodeValue")
+        sun.node_tree.links.new(number.outputs[0], shown.inputs["Strength"])
+        self.assertEqual(exported(), 7)
+        self.assertIn("its nodes compute them", " ".join(lights.lost_of_lights(self.scene)))
+        surface = sun.node_tree.get_output_node("CYCLES").inputs["Surface"]
+        sun.node_tree.links.remove(surface.links[0])
+        self.assertEqual(exported(), 0)
+
     def test_lights_are_as_strong_as_in_blender(self):
         """A matte floor under one lamp has the same mean light: a point, a spot, a sun, and areas."""
         self.empty_scene()
@@ -340,10 +376,14 @@ class Light(AddOnTest):
         # Cycles of Blender 3.4 darkens a spot by the cosine of the angle to its axis, which glTF cannot say: near the axis
         # the two agree.
         # Area lights hang above the camera, which would see them from behind.
-        for kind, energy, height in (("POINT", 100, 3), ("SPOT", 4000, 15), ("SUN", 3, 3), ("SQUARE", 500, 6), ("ELLIPSE", 500, 6)):
+        for kind, energy, height in (("POINT", 100, 3), ("SPOT", 4000, 15), ("SUN", 3, 3), ("SUN BY NODES", 1.5, 3), ("SQUARE", 500, 6),
+                                     ("ELLIPSE", 500, 6)):
             with self.subTest(kind):
                 shape, kind = (kind, "AREA") if kind in ("SQUARE", "ELLIPSE") else ("", kind)
+                kind, by_nodes = kind.removesuffix(" BY NODES"), kind.endswith(" BY NODES")
                 lamp = bpy.data.lights.new(kind, kind)
+                if by_nodes:
+                    self.show_second_emission(lamp)
                 lamp.energy, lamp.color = energy, (1, 0.5, 0.25)
                 if kind in ("POINT", "SPOT"):
                     lamp.shadow_soft_size = 0
