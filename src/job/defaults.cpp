@@ -62,9 +62,11 @@ void settle_accumulation(const ViewInputs& inputs, const std::vector<std::int32_
   if (job.accumulate.mode != AccumulateMode::automatic) {
     return;
   }
-  // How many samples a quality takes was measured of frames by themselves. A frame that a chunk names is one of many.
-  const bool joins = !job.foveation.target.is_given() && (frames.size() > 1 || (job.chunk && job.frames) ||
-                                                          (job.frames && is_longer_than_a_frame(job, inputs)));
+  // Raw samples are asked for as they are: by `none` for references, and by other denoisers. How many samples a quality
+  // takes was measured of frames by themselves. A frame that a chunk names is one of many.
+  const bool joins =
+      filter_of(job).name != "none" && !job.foveation.target.is_given() &&
+      (frames.size() > 1 || (job.chunk && job.frames) || (job.frames && is_longer_than_a_frame(job, inputs)));
   job.accumulate.mode = joins ? AccumulateMode::window : AccumulateMode::off;
   if (!joins) {
     return;

@@ -19,10 +19,10 @@ Job with_default_sampling(Job job, Decisions* decisions = nullptr);
 // without gaze, and nothing changes.
 void settle_rate(const GazeLog* log, JobSettings& job);
 
-// AccumulateMode::automatic becomes a window for a sequence, and off for a single still and for a stated quality.
-// `frames` are those that the job wants; one of them alone joins as it does in the whole sequence, so that it is the
-// same picture. Where the job does not state how long its window is, it has 16 million pixels at most, but one frame on
-// each side, which takes 4 to 6 GB on any machine.
+// AccumulateMode::automatic becomes a window for a sequence, and off for a single still, for a stated quality and for
+// raw samples (the filter none). `frames` are those that the job wants; one of them alone joins as it does in the whole
+// sequence, so that it is the same picture. Where the job does not state how long its window is, it has 16 million
+// pixels at most, but one frame on each side, which takes 4 to 6 GB on any machine.
 void settle_accumulation(const ViewInputs& inputs, const std::vector<std::int32_t>& frames, Job& job,
                          Decisions& decisions);
 

@@ -62,7 +62,7 @@ DISPLAYS = {"desktop": (1708, 961, 28), "hmd": (1131, 1209, 13)}
 FRAMES_PER_SECOND = 24
 RAW_SPP = 64
 OUTSIDE_SPP = 1 / 256
-RAW = ["--filter", "none", "--no-guiding"]
+RAW = ["--filter", "none", "--no-guiding", "--accumulate", "off"]
 METRICS = ("fovvideovdp", "flicker")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""results.json of a few runs of the box, rendered and compared here: what a report is made from."""
+"""What a report is made from: results.json of a few runs of the box, rendered and compared here, or of stated scores."""
 
 import csv
 import json
@@ -76,6 +76,21 @@ def make(folder, size="64x36", frames=3):
         "notes": ["Intervals of this file are made up; its values are measured."]}
     (folder / "results.json").write_text(json.dumps(results))
     return results
+
+
+def estimate(mean, low, high, resolved=True):
+    return {"mean": mean, "low": low, "high": high, "resolved": resolved}
+
+
+def row(name, role, flip):
+    return {"id": name, "scene": "box", "gaze": "glide", "role": role, "of": None if role == "test" else "t", "label": f"run {name}", "settings": {},
+            "time_s": {"mean": 2, "low": 1.9, "high": 2.1}, "samples": 1e6, "spp_mean": None, "rays": None, "peak_mib": None,
+            "speed_up": {"mean": 4, "low": 3.8, "high": 4.2}, "efficiency": None, "scores": {"flip": {"whole": flip}}, "frames": []}
+
+
+def results(*rows):
+    return {"format": "gazetrace-sweep-1", "title": "a sweep", "bands_deg": [0, 2.6, 60], "metrics": [{"name": "flip", "better": "lower"}],
+            "scenes": [{"name": "box", "reference": {"spp": 64, "floor": {"flip": {"whole": 0.01}}}}], "rows": list(rows)}
 
 
 if __name__ == "__main__":

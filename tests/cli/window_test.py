@@ -51,6 +51,14 @@ class Window(harness.CliTest):
         self.assertEqual(alone, off)  # a frame is 41.7 ms
         self.assertNotEqual(self.render("both", "--frames", "3,4", "--filter", "none"), off)
 
+    def test_raw_samples_join_only_where_that_is_asked(self):
+        self.write("job.toml", "\n".join(line for line in JOB_TOML.splitlines() if not line.startswith("accumulate")))
+        raw = self.render("raw", "--frames", "3,4", "--filter", "none")
+        self.assertEqual(raw, self.render("off", "--frames", "3,4", "--filter", "none", "--accumulate", "off"))
+        self.assertNotEqual(raw, self.render("window", "--frames", "3,4", "--filter", "none", "--accumulate", "window"))
+        filtered = self.render("filtered", "--frames", "3,4")
+        self.assertNotEqual(filtered, self.render("alone", "--frames", "3,4", "--accumulate", "off"))
+
     def test_a_frame_is_the_same_in_every_run(self):
         whole = self.render("whole", "--frames", "1-8")
         for frames in ("1-3", "4", "5-8", "2,7"):

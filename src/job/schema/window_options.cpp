@@ -7,11 +7,13 @@ namespace gazetrace {
 void add_window_options(JobSchema& schema) {
   schema.group("Over time");
   schema
-      .value("--accumulate", at(&JobSettings::accumulate, &AccumulateSettings::mode), choices<AccumulateMode>(),
-             Touch::window,
-             "window: each frame is reconstructed from its own samples and those of the frames around it, joined where "
-             "they saw the same places of surfaces, which follow camera, bodies and shapes. Surfaces whose light has "
-             "changed do not join. auto: window for a sequence, off for a single still and for a stated quality")
+      .value(
+          "--accumulate", at(&JobSettings::accumulate, &AccumulateSettings::mode), choices<AccumulateMode>(),
+          Touch::window,
+          "window: each frame is reconstructed from its own samples and those of the frames around it, joined where "
+          "they saw the same places of surfaces, which follow camera, bodies and shapes. Surfaces whose light has "
+          "changed do not join. auto: window for a sequence, off for a single still, for a stated quality and for raw "
+          "samples (--filter none)")
       .with(Trait::always_stated);
   schema
       .value("--accumulate-past", &JobSettings::accumulate_past, "DURATION", Touch::window,
