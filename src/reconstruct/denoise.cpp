@@ -18,8 +18,8 @@ constexpr int kFineAround = 6;
 constexpr int kCoarseAround = 2 * kCoarsePx;
 // Errors count relative to the light, which counts as at least this share of the picture's mean.
 constexpr double kLeastLight = 0.01;
-// A half goes through the network where a pixel of so many has kSamplesOfBlend: a small fovea of many samples has a
-// wide margin of few.
+// A half goes through the network where one of so many has kSamplesOfBlend: a small fovea of many samples has a wide
+// margin of few.
 constexpr std::size_t kLeastPart = 32;
 // Nothing is given back to pixels with half of kSamplesOfBlend, everything from kSamplesOfBlend on.
 float share_of_samples(float samples) {
@@ -142,7 +142,17 @@ ImageRgb blend(const DenoiserInput& input, const ImageRgb& denoised, int threads
 
 }  // namespace
 
-ImageRgb denoise(const DenoiserInput& input, int threads) {
+DenoiserWork denoiser_work(const SamplingMap& map) {
+  const auto many = static_cast<std::size_t>(std::count_if(map.sites.begin(), map.sites.end(), [](const Site& site) {
+    return static_cast<float>(site.samples) >= kSamplesOfBlend;
+  }));
+  return kLeastPart * many >= map.sites.size() ? DenoiserWork::with_halves : DenoiserWork::once;
+}
+
+ImageRgb denoise(const DenoiserInput& input, DenoiserWork work, int threads) {
+  if (work == DenoiserWork::once) {
+    return open_image_denoise(input, threads, DenoiserQuality::balanced);
+  }
   ImageRgb denoised = open_image_denoise(input, threads, DenoiserQuality::high);
   const std::vector<float>& samples = input.samples.pixels;
   const auto many = std::count_if(samples.begin(), samples.end(), [](float one) { return one >= kSamplesOfBlend; });

@@ -236,9 +236,10 @@ const DenoiserLibrary& denoiser_library() {
 
 std::string denoiser_description() {
   const DenoiserLibrary& found = denoiser_library();
-  return found.path.empty() ? ""
-                            : "Open Image Denoise " + found.version +
-                                  ", quality high (of halves balanced), built-in weights, " + found.instruction_set;
+  return found.path.empty()
+             ? ""
+             : "Open Image Denoise " + found.version +
+                   ", quality high (balanced of halves and of few samples), built-in weights, " + found.instruction_set;
 }
 
 ImageRgb without_outliers(const ImageRgb& radiance) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Intel Open Image Denoise, shown what it was trained on: radiance, albedo and normal of every pixel
 // (denoiser_input.hpp), at the resolution of its samples (denoiser_levels.hpp). The network runs once for each size of
-// blocks, or twice (denoise.hpp).
+// blocks, or twice (denoiser_work()).
 #include <utility>
 #include <vector>
 
@@ -19,9 +19,10 @@ const FilterDefinition filter_oidn{
       Frame frame = filter_linear.frame(input);
       DenoiserInput shown = denoiser_input(input.sparse, input.map, *input.guides, input.threads);
       const std::vector<DenoiserLevel> levels = denoiser_levels(shown, input.map, input.threads);
+      const DenoiserWork work = denoiser_work(input.map);
       std::vector<ImageRgb> pictures;
       for (const DenoiserLevel& level : levels) {
-        pictures.push_back(denoise(level.input, input.threads));
+        pictures.push_back(denoise(level.input, work, input.threads));
       }
       frame.radiance = blend_levels(levels, pictures, input.map, input.threads);
       frame.sample_count = std::move(shown.samples);

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <random>
 
+#include "gazetrace/display.hpp"
+#include "gazetrace/foveation.hpp"
 #include "gazetrace/reconstruct.hpp"
 #include "reconstruct/open_image_denoise.hpp"
 
@@ -73,20 +75,44 @@ TEST_F(Denoise, IsNoWorseThanSamplesThatKnowBetter) {
   const Picture picture = planted({.texture = 0.1F, .noise = 0.01F});
   const double raw = error_of(picture.input.radiance, picture.truth);
   ASSERT_GT(error_of(open_image_denoise(picture.input, 2, DenoiserQuality::high), picture.truth), 3 * raw);
-  EXPECT_LT(error_of(denoise(picture.input, 2), picture.truth), 1.1 * raw);
+  EXPECT_LT(error_of(denoise(picture.input, DenoiserWork::with_halves, 2), picture.truth), 1.1 * raw);
 }
 
 TEST_F(Denoise, IsTheNetworksWhereThereIsNothingButNoise) {
   const Picture picture = planted({.texture = 0, .noise = 0.1F});
   const double network = error_of(open_image_denoise(picture.input, 2, DenoiserQuality::high), picture.truth);
   ASSERT_LT(network, 0.2 * error_of(picture.input.radiance, picture.truth));
-  EXPECT_LT(error_of(denoise(picture.input, 2), picture.truth), 2 * network);
+  EXPECT_LT(error_of(denoise(picture.input, DenoiserWork::with_halves, 2), picture.truth), 2 * network);
+}
+
+// A window's samples are many, the frame's own few: their time would buy more as samples.
+TEST_F(Denoise, RunsTheSmallNetworkOnceForFewSamplesOfTheFramesOwn) {
+  const Picture picture = planted({.texture = 0.1F, .noise = 0.01F});
+  EXPECT_EQ(denoise(picture.input, DenoiserWork::once, 2),
+            open_image_denoise(picture.input, 2, DenoiserQuality::balanced));
+}
+
+TEST(DenoiserWorkOf, AFrameFollowsItsSamplesAndNotThePixelsThatAreWithout) {
+  FoveationSettings settings;
+  settings.sampling = UniformSampling{};
+  settings.spp = 15;
+  const PlanarView view = view_of_perspective(1.0, 64, 36);
+  EXPECT_EQ(denoiser_work(make_sampling_map(settings, view, {})), DenoiserWork::once);
+  settings.spp = 16;
+  EXPECT_EQ(denoiser_work(make_sampling_map(settings, view, {})), DenoiserWork::with_halves);
+  // A fovea of a tenth of the pixels with 16, and one sample anywhere else.
+  SamplingMap map = make_sampling_map(settings, view, {});
+  for (std::size_t i = map.sites.size() / 10; i < map.sites.size(); ++i) {
+    map.sites[i].samples = 1;
+  }
+  EXPECT_EQ(denoiser_work(map), DenoiserWork::with_halves);
 }
 
 // Few samples say little about their own error: the network runs once.
 TEST_F(Denoise, IsTheNetworksWithFewSamples) {
   const Picture picture = planted({.texture = 0.1F, .noise = 0.01F, .samples = 15});
-  EXPECT_EQ(denoise(picture.input, 2), open_image_denoise(picture.input, 2, DenoiserQuality::high));
+  EXPECT_EQ(denoise(picture.input, DenoiserWork::with_halves, 2),
+            open_image_denoise(picture.input, 2, DenoiserQuality::high));
 }
 
 // A fovea of many samples, in a margin that has few and keeps the network's picture.
@@ -97,7 +123,7 @@ TEST_F(Denoise, GivesBackToTheFewPixelsThatHaveManySamples) {
     samples.pixels[i] = 1;
   }
   const ImageRgb network = open_image_denoise(picture.input, 2, DenoiserQuality::high);
-  const ImageRgb denoised = denoise(picture.input, 2);
+  const ImageRgb denoised = denoise(picture.input, DenoiserWork::with_halves, 2);
   EXPECT_NE(denoised.pixels.front(), network.pixels.front());
   EXPECT_EQ(denoised.pixels.back(), network.pixels.back());
 }
@@ -127,13 +153,14 @@ TEST_F(Denoise, FireflyOfOneHalfGivesNoNoiseBack) {
     picture.input.halves[half](kSize / 2, kSize / 2) = {30, 30, 30};
     picture.input.halves[1 - half](kSize / 2, kSize / 2) = {1, 1, 1};
     picture.input.radiance(kSize / 2, kSize / 2) = {15.5F, 15.5F, 15.5F};
-    EXPECT_LT(error_around_middle(denoise(picture.input, 2), picture.truth), 0.2 * 0.1) << half;
+    EXPECT_LT(error_around_middle(denoise(picture.input, DenoiserWork::with_halves, 2), picture.truth), 0.2 * 0.1)
+        << half;
   }
 }
 
 TEST_F(Denoise, ThreadsChangeNoBit) {
   const Picture picture = planted({.texture = 0.05F, .noise = 0.05F});
-  EXPECT_EQ(denoise(picture.input, 1), denoise(picture.input, 2));
+  EXPECT_EQ(denoise(picture.input, DenoiserWork::with_halves, 1), denoise(picture.input, DenoiserWork::with_halves, 2));
 }
 
 }  // namespace
