@@ -143,9 +143,11 @@ ImageRgb blend(const DenoiserInput& input, const ImageRgb& denoised, int threads
 }  // namespace
 
 DenoiserWork denoiser_work(const SamplingMap& map) {
-  const auto many = static_cast<std::size_t>(std::count_if(map.sites.begin(), map.sites.end(), [](const Site& site) {
-    return static_cast<float>(site.samples) >= kSamplesOfBlend;
-  }));
+  std::size_t many = 0;
+  for (const MapTile& tile : map.tiles) {  // where frames join, sites have the samples of all, tiles the frame's own
+    many +=
+        static_cast<float>(tile.samples) >= kSamplesOfBlend * static_cast<float>(tile.site_count) ? tile.site_count : 0;
+  }
   return kLeastPart * many >= map.sites.size() ? DenoiserWork::with_halves : DenoiserWork::once;
 }
 

@@ -92,18 +92,22 @@ TEST_F(Denoise, RunsTheSmallNetworkOnceForFewSamplesOfTheFramesOwn) {
             open_image_denoise(picture.input, 2, DenoiserQuality::balanced));
 }
 
-TEST(DenoiserWorkOf, AFrameFollowsItsSamplesAndNotThePixelsThatAreWithout) {
+TEST(DenoiserWorkOf, AFrameFollowsItsOwnSamples) {
   FoveationSettings settings;
   settings.sampling = UniformSampling{};
-  settings.spp = 15;
-  const PlanarView view = view_of_perspective(1.0, 64, 36);
-  EXPECT_EQ(denoiser_work(make_sampling_map(settings, view, {})), DenoiserWork::once);
+  const PlanarView view = view_of_perspective(1.0, 256, 144);
   settings.spp = 16;
   EXPECT_EQ(denoiser_work(make_sampling_map(settings, view, {})), DenoiserWork::with_halves);
-  // A fovea of a tenth of the pixels with 16, and one sample anywhere else.
+  settings.spp = 15;
   SamplingMap map = make_sampling_map(settings, view, {});
-  for (std::size_t i = map.sites.size() / 10; i < map.sites.size(); ++i) {
-    map.sites[i].samples = 1;
+  EXPECT_EQ(denoiser_work(map), DenoiserWork::once);
+  for (Site& site : map.sites) {  // as a window's frames leave it
+    site.samples = 23 * 15;
+  }
+  EXPECT_EQ(denoiser_work(map), DenoiserWork::once);
+  // A fovea of a tenth of the picture.
+  for (std::size_t t = 0; t < map.tiles.size() / 10; ++t) {
+    map.tiles[t].samples = 16 * map.tiles[t].site_count;
   }
   EXPECT_EQ(denoiser_work(map), DenoiserWork::with_halves);
 }
