@@ -64,6 +64,7 @@ struct EdgeSurface {
 // every frame.
 struct Guides {
   GuideCamera camera;
+  int spp = 1;  // GuideSettings::spp, rays behind each pixel of the images
   // The share of uniform light from all around that the surface reflects to the camera: the directional albedo of the
   // metallic-roughness lobes, multiple scattering included. Of the extensions, only the index of refraction is
   // considered. At least kLeastAlbedo; 1 for misses and unlit surfaces. Textures are read at the level of detail that

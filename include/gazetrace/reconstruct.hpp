@@ -66,8 +66,9 @@ class Reconstruction {
   // The settings under which the tracer collects the filter's inputs: sums per surface of the sites that it changes.
   [[nodiscard]] TraceSettings trace_settings(TraceSettings settings) const;
   // The settings of the guides that the filter needs, for samples that are traced with `trace`: their materials are
-  // those of the samples. Empty: the filter needs no guides.
-  [[nodiscard]] std::optional<GuideSettings> guide_settings(const TraceSettings& trace) const;
+  // those of the samples. Empty: the filter needs no guides. `joins`: a window's frames join, whose samples have seen
+  // most features often, and one ray is enough.
+  [[nodiscard]] std::optional<GuideSettings> guide_settings(const TraceSettings& trace, bool joins = false) const;
 
   // A site without samples takes its value from its neighbours. `guides`: of the map's size, nullptr unless the filter
   // needs them. Error(runtime) for inputs that do not belong together.

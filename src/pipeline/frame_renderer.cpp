@@ -178,7 +178,8 @@ RenderedFrame FrameRenderer::finish_with(const FrameRequest& request, const Samp
   rendered.times = own.times;
   StageTimes& times = rendered.times;
   std::optional<Guides> first_hits;
-  if (const auto wanted = reconstruction_.guide_settings(settings_.trace)) {
+  const bool joins = settings_.accumulate.mode == AccumulateMode::window;
+  if (const auto wanted = reconstruction_.guide_settings(settings_.trace, joins)) {
     first_hits = timed(times.guides_ms, [&] {
       return tracer_->at(shutter_of(request)).guides(request.camera, request.width_px, request.height_px, *wanted);
     });

@@ -118,7 +118,7 @@ ImageRgb blend(const DenoiserInput& input, const ImageRgb& denoised, int threads
                            .samples = {},
                            .halves = {},
                            .clean = input.clean};
-  const ImageRgb network = open_image_denoise(half, threads, DenoiserQuality::balanced);
+  const ImageRgb network = open_image_denoise(half, threads, DenoiserNetwork::balanced);
   Residuals residuals{difference(without_outliers(input.halves[0]), network, threads),
                       difference(without_outliers(input.halves[1]), network, threads),
                       difference(without_outliers(input.radiance), denoised, threads)};
@@ -143,19 +143,27 @@ ImageRgb blend(const DenoiserInput& input, const ImageRgb& denoised, int threads
 }  // namespace
 
 DenoiserWork denoiser_work(const SamplingMap& map) {
-  std::size_t many = 0;
-  for (const MapTile& tile : map.tiles) {  // where frames join, sites have the samples of all, tiles the frame's own
-    many +=
-        static_cast<float>(tile.samples) >= kSamplesOfBlend * static_cast<float>(tile.site_count) ? tile.site_count : 0;
+  // Where frames join, sites have the samples of all, and tiles the frame's own.
+  const auto is_in_a_part = [&](float samples) {
+    std::size_t many = 0;
+    for (const MapTile& tile : map.tiles) {
+      const bool has_many = static_cast<float>(tile.samples) >= samples * static_cast<float>(tile.site_count);
+      many += has_many ? tile.site_count : 0;
+    }
+    return kLeastPart * many >= map.sites.size();
+  };
+  if (is_in_a_part(kSamplesOfBlend)) {
+    return DenoiserWork::with_halves;
   }
-  return kLeastPart * many >= map.sites.size() ? DenoiserWork::with_halves : DenoiserWork::once;
+  return is_in_a_part(kSamplesOfUsual) ? DenoiserWork::usual : DenoiserWork::fast;
 }
 
 ImageRgb denoise(const DenoiserInput& input, DenoiserWork work, int threads) {
-  if (work == DenoiserWork::once) {
-    return open_image_denoise(input, threads, DenoiserQuality::balanced);
+  if (work != DenoiserWork::with_halves) {
+    return open_image_denoise(input, threads,
+                              work == DenoiserWork::fast ? DenoiserNetwork::fast : DenoiserNetwork::usual);
   }
-  ImageRgb denoised = open_image_denoise(input, threads, DenoiserQuality::high);
+  ImageRgb denoised = open_image_denoise(input, threads, DenoiserNetwork::high);
   const std::vector<float>& samples = input.samples.pixels;
   const auto many = std::count_if(samples.begin(), samples.end(), [](float one) { return one >= kSamplesOfBlend; });
   const bool blends = !input.halves[0].empty() && kLeastPart * static_cast<std::size_t>(many) >= samples.size();

@@ -140,7 +140,7 @@ DenoiserInput denoiser_input(const SparseFrame& sparse, const SamplingMap& map, 
       const Site& site = map.sites[i];
       const Features own = seen_by_samples(sparse, i);
       const float share = share_of_guides(sparse, i);
-      const float rays = share * static_cast<float>(kDenoiserGuideRays);
+      const float rays = share * static_cast<float>(guides.spp);
       // Samples of a larger site are not those of its pixels, and only where the guides know nothing better than them.
       const float samples = site.pixels == 1 ? static_cast<float>(sparse.count[i]) : 1.0F - share;
       const bool by_samples = sparse.count[i] > 0;

@@ -22,12 +22,12 @@ struct DenoiserInput {
   std::array<ImageRgb, 2> halves;
   bool clean = false;  // albedo and normal have so little noise that the denoiser may believe every pixel of them
 };
-// Rays of the guides through each pixel: with four, and the samples' own first hits, features are as good to the
-// network as those of 64 samples.
+// Rays of the guides through each pixel of a frame by itself: with four, and the samples' own first hits, features are
+// as good to the network as those of 64 samples.
 inline constexpr int kDenoiserGuideRays = 4;
 
 // `sparse` holds surfaces and first hits (TraceSettings::surfaces), and may hold a first half; `guides` are of the
-// map's size and have kDenoiserGuideRays rays. Albedo and normal are means over these rays and the samples of a site of
+// map's size. Albedo and normal are means over these rays and the samples of a site of
 // one pixel; over the samples alone where they see through lens and shutter what the pinhole of the guides sees
 // elsewhere. Sites of several pixels give each of them one light, times its own albedo, so that their mean is that of
 // the samples (denoiser_levels.hpp shows them to the network block by block). Sites without samples show the light of

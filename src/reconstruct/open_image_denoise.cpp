@@ -32,9 +32,13 @@ using Filter = struct OIDNFilterImpl*;
 constexpr int kCpuDevice = 1;    // OIDN_DEVICE_TYPE_CPU, the only one that takes memory that we have allocated
 constexpr int kThreeFloats = 3;  // OIDN_FORMAT_FLOAT3
 
-// OIDN_QUALITY_BALANCED and OIDN_QUALITY_HIGH
-int number_of(DenoiserQuality quality) {
-  return quality == DenoiserQuality::high ? 6 : 5;
+// OIDN_QUALITY_FAST, OIDN_QUALITY_BALANCED and OIDN_QUALITY_HIGH; a version is 10000 major + 100 minor + patch.
+constexpr int kFirstWithFast = 20300;
+int quality_of(DenoiserNetwork network, int version) {
+  if (network == DenoiserNetwork::high || network == DenoiserNetwork::usual) {
+    return 6;
+  }
+  return network == DenoiserNetwork::fast && version >= kFirstWithFast ? 4 : 5;
 }
 
 struct Library {
@@ -176,7 +180,7 @@ const Found& library() {
 // One device serves all frames of a process, one at a time, until it is asked for another number of threads.
 class SharedDevice {
  public:
-  ImageRgb denoise(const ImageRgb& radiance, const DenoiserInput& input, int threads, DenoiserQuality quality) {
+  ImageRgb denoise(const ImageRgb& radiance, const DenoiserInput& input, int threads, DenoiserNetwork network) {
     const std::lock_guard<std::mutex> alone(mutex_);
     const Library& call = library().library;
     if (call.new_device == nullptr) {
@@ -203,8 +207,8 @@ class SharedDevice {
     image("normal", input.normal);
     image("output", result);
     call.set_filter_bool(filter, "hdr", true);
-    call.set_filter_bool(filter, "cleanAux", input.clean);
-    call.set_filter_int(filter, "quality", number_of(quality));
+    call.set_filter_bool(filter, "cleanAux", input.clean && network != DenoiserNetwork::usual);
+    call.set_filter_int(filter, "quality", quality_of(network, call.get_device_int(device_, "version")));
     call.commit_filter(filter);
     call.execute_filter(filter);
     const std::string problem = problem_of(call, device_);
@@ -236,10 +240,9 @@ const DenoiserLibrary& denoiser_library() {
 
 std::string denoiser_description() {
   const DenoiserLibrary& found = denoiser_library();
-  return found.path.empty()
-             ? ""
-             : "Open Image Denoise " + found.version +
-                   ", quality high (balanced of halves and of few samples), built-in weights, " + found.instruction_set;
+  return found.path.empty() ? ""
+                            : "Open Image Denoise " + found.version + ", network by the samples, built-in weights, " +
+                                  found.instruction_set;
 }
 
 ImageRgb without_outliers(const ImageRgb& radiance) {
@@ -279,9 +282,9 @@ ImageRgb without_outliers(const ImageRgb& radiance) {
   return shown;
 }
 
-ImageRgb open_image_denoise(const DenoiserInput& input, int threads, DenoiserQuality quality) {
+ImageRgb open_image_denoise(const DenoiserInput& input, int threads, DenoiserNetwork network) {
   static SharedDevice device;
-  return device.denoise(without_outliers(input.radiance), input, resolve_threads(threads), quality);
+  return device.denoise(without_outliers(input.radiance), input, resolve_threads(threads), network);
 }
 
 }  // namespace gazetrace

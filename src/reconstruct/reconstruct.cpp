@@ -94,10 +94,11 @@ TraceSettings Reconstruction::trace_settings(TraceSettings settings) const {
   return settings;
 }
 
-std::optional<GuideSettings> Reconstruction::guide_settings(const TraceSettings& trace) const {
+std::optional<GuideSettings> Reconstruction::guide_settings(const TraceSettings& trace, bool joins) const {
   std::optional<GuideSettings> settings = filter_.needs.guides;
   if (settings) {
     settings->diffuse = trace.diffuse;
+    settings->spp = joins ? 1 : settings->spp;
   }
   return settings;
 }

@@ -143,6 +143,7 @@ Guides trace_guides(const RenderScene& scene, const LightSampler& lights, const 
                     int height_px, const GuideSettings& settings, int threads) {
   check_guides(settings);
   Guides out;
+  out.spp = settings.spp;
   const CameraRays::Placement& placement = camera.placement();
   out.camera = {camera.is_perspective(), placement.forward, placement.right_step, placement.up_step,
                 camera.middle_px()};

@@ -74,22 +74,25 @@ class Denoise : public testing::Test {
 TEST_F(Denoise, IsNoWorseThanSamplesThatKnowBetter) {
   const Picture picture = planted({.texture = 0.1F, .noise = 0.01F});
   const double raw = error_of(picture.input.radiance, picture.truth);
-  ASSERT_GT(error_of(open_image_denoise(picture.input, 2, DenoiserQuality::high), picture.truth), 3 * raw);
+  ASSERT_GT(error_of(open_image_denoise(picture.input, 2, DenoiserNetwork::high), picture.truth), 3 * raw);
   EXPECT_LT(error_of(denoise(picture.input, DenoiserWork::with_halves, 2), picture.truth), 1.1 * raw);
 }
 
 TEST_F(Denoise, IsTheNetworksWhereThereIsNothingButNoise) {
   const Picture picture = planted({.texture = 0, .noise = 0.1F});
-  const double network = error_of(open_image_denoise(picture.input, 2, DenoiserQuality::high), picture.truth);
+  const double network = error_of(open_image_denoise(picture.input, 2, DenoiserNetwork::high), picture.truth);
   ASSERT_LT(network, 0.2 * error_of(picture.input.radiance, picture.truth));
   EXPECT_LT(error_of(denoise(picture.input, DenoiserWork::with_halves, 2), picture.truth), 2 * network);
 }
 
 // A window's samples are many, the frame's own few: their time would buy more as samples.
-TEST_F(Denoise, RunsTheSmallNetworkOnceForFewSamplesOfTheFramesOwn) {
+TEST_F(Denoise, RunsASmallerNetworkOnceForFewSamplesOfTheFramesOwn) {
   const Picture picture = planted({.texture = 0.1F, .noise = 0.01F});
-  EXPECT_EQ(denoise(picture.input, DenoiserWork::once, 2),
-            open_image_denoise(picture.input, 2, DenoiserQuality::balanced));
+  const ImageRgb usual = open_image_denoise(picture.input, 2, DenoiserNetwork::usual);
+  EXPECT_EQ(denoise(picture.input, DenoiserWork::usual, 2), usual);
+  const ImageRgb fast = open_image_denoise(picture.input, 2, DenoiserNetwork::fast);
+  EXPECT_EQ(denoise(picture.input, DenoiserWork::fast, 2), fast);
+  EXPECT_NE(fast, usual);
 }
 
 TEST(DenoiserWorkOf, AFrameFollowsItsOwnSamples) {
@@ -100,23 +103,25 @@ TEST(DenoiserWorkOf, AFrameFollowsItsOwnSamples) {
   EXPECT_EQ(denoiser_work(make_sampling_map(settings, view, {})), DenoiserWork::with_halves);
   settings.spp = 15;
   SamplingMap map = make_sampling_map(settings, view, {});
-  EXPECT_EQ(denoiser_work(map), DenoiserWork::once);
+  EXPECT_EQ(denoiser_work(map), DenoiserWork::usual);
   for (Site& site : map.sites) {  // as a window's frames leave it
     site.samples = 23 * 15;
   }
-  EXPECT_EQ(denoiser_work(map), DenoiserWork::once);
+  EXPECT_EQ(denoiser_work(map), DenoiserWork::usual);
   // A fovea of a tenth of the picture.
   for (std::size_t t = 0; t < map.tiles.size() / 10; ++t) {
     map.tiles[t].samples = 16 * map.tiles[t].site_count;
   }
   EXPECT_EQ(denoiser_work(map), DenoiserWork::with_halves);
+  settings.spp = 3;
+  EXPECT_EQ(denoiser_work(make_sampling_map(settings, view, {})), DenoiserWork::fast);
 }
 
 // Few samples say little about their own error: the network runs once.
 TEST_F(Denoise, IsTheNetworksWithFewSamples) {
   const Picture picture = planted({.texture = 0.1F, .noise = 0.01F, .samples = 15});
   EXPECT_EQ(denoise(picture.input, DenoiserWork::with_halves, 2),
-            open_image_denoise(picture.input, 2, DenoiserQuality::high));
+            open_image_denoise(picture.input, 2, DenoiserNetwork::high));
 }
 
 // A fovea of many samples, in a margin that has few and keeps the network's picture.
@@ -126,7 +131,7 @@ TEST_F(Denoise, GivesBackToTheFewPixelsThatHaveManySamples) {
   for (std::size_t i = samples.pixels.size() / 8; i < samples.pixels.size(); ++i) {
     samples.pixels[i] = 1;
   }
-  const ImageRgb network = open_image_denoise(picture.input, 2, DenoiserQuality::high);
+  const ImageRgb network = open_image_denoise(picture.input, 2, DenoiserNetwork::high);
   const ImageRgb denoised = denoise(picture.input, DenoiserWork::with_halves, 2);
   EXPECT_NE(denoised.pixels.front(), network.pixels.front());
   EXPECT_EQ(denoised.pixels.back(), network.pixels.back());

@@ -56,7 +56,8 @@ SamplingMap fine_map(std::uint32_t samples) {
 
 // Of one pixel: samples are shown as they are; features are means over four rays and twelve samples.
 TEST(DenoiserInput, SamplesAndRaysCountAlike) {
-  const Guides guides = wall();  // of albedo 0.5
+  Guides guides = wall();  // of albedo 0.5
+  guides.spp = 4;
   const SamplingMap map = fine_map(12);
   const DenoiserInput shown = denoiser_input(samples_of(map, guides, {.light = 3, .albedo = 0.9F}), map, guides, 1);
   EXPECT_TRUE(shown.clean);

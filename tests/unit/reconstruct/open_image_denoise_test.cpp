@@ -62,21 +62,21 @@ class OpenImageDenoise : public testing::Test {
 TEST_F(OpenImageDenoise, TakesNoiseAway) {
   const DenoiserInput input = noisy_wall();
   EXPECT_GT(error_of(input.radiance), 0.9);
-  EXPECT_LT(error_of(open_image_denoise(input, 1, DenoiserQuality::high)), 0.1);
+  EXPECT_LT(error_of(open_image_denoise(input, 1, DenoiserNetwork::high)), 0.1);
 }
 
 TEST_F(OpenImageDenoise, ThreadsChangeNoBit) {
   const DenoiserInput input = noisy_wall();
-  EXPECT_EQ(open_image_denoise(input, 1, DenoiserQuality::high), open_image_denoise(input, 2, DenoiserQuality::high));
+  EXPECT_EQ(open_image_denoise(input, 1, DenoiserNetwork::high), open_image_denoise(input, 2, DenoiserNetwork::high));
 }
 
 TEST_F(OpenImageDenoise, OneAbsurdSampleLeavesTheRestOfThePicture) {
-  const double usual = error_of(open_image_denoise(noisy_wall(), 2, DenoiserQuality::high));
+  const double usual = error_of(open_image_denoise(noisy_wall(), 2, DenoiserNetwork::high));
   for (const float absurd :
        {1e8F, 1e30F, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
     DenoiserInput input = noisy_wall();
     input.radiance(kSize / 2, kSize / 2) = {absurd, absurd, absurd};
-    const ImageRgb result = open_image_denoise(input, 2, DenoiserQuality::high);
+    const ImageRgb result = open_image_denoise(input, 2, DenoiserNetwork::high);
     EXPECT_LT(error_of(result, 12), 2 * usual) << absurd;
     for (const Vec3f& pixel : result.pixels) {
       ASSERT_TRUE(std::isfinite(pixel.x) && pixel.x < 20 * kTruth) << absurd;
