@@ -40,6 +40,9 @@ NamedText split_named_text(std::string_view text) {
 
 std::vector<double> parse_values(std::string_view text, const std::vector<NamedParameter>& parameters,
                                  const std::string& place) {
+  if (parameters.empty() && !text.empty()) {
+    throw Error(ErrorKind::usage, place, fmt::format("there are no parameters such as '{}'", text), "leave it out");
+  }
   std::vector<double> values;
   for (const NamedParameter& parameter : parameters) {
     values.push_back(parameter.value);

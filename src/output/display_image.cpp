@@ -37,6 +37,10 @@ const Format& format_of(const std::string& path) {
       return format;
     }
   }
+  if (suffix == ".mp4" || suffix == ".mov" || suffix == ".mkv" || suffix == ".webm" || suffix == ".avi") {
+    throw Error(ErrorKind::usage, path, "a video is made of pictures",
+                "render .exr or .png first, and then take 'gazetrace video'");
+  }
   throw Error(ErrorKind::usage, path,
               suffix.empty() ? "a display image needs a suffix" : "no display image ends in " + suffix,
               "use .png, .jpg, .jpeg, .tif, .tiff or .dpx, or .exr for scene-linear light");

@@ -163,13 +163,14 @@ void warn_of_held_gaze(const std::vector<FrameRequest>& frames, const GazeLog& l
   for (const FrameRequest& request : frames) {
     const GazeAtTime& gaze = request.gaze_render;
     before += gaze.no_gaze && !log.samples.empty() && gaze.t_log_ns < log.samples.front().t_ns ? 1 : 0;
-    if (!gaze.no_gaze || gaze.state != GazeState::held) {
+    if (gaze.state != GazeState::held) {
       continue;
     }
-    ++held;
-    if (!log.samples.empty() && gaze.t_log_ns > log.samples.back().t_ns) {
+    if (!log.samples.empty() && gaze.t_log_ns > log.samples.back().t_ns) {  // a row young enough to hold, too
       first_after = after_end == 0 ? request.frame : first_after;
       ++after_end;
+    } else if (gaze.no_gaze) {
+      ++held;
     }
   }
   if (2 * before > frames.size()) {  // a latency leaves the first few frames without gaze
@@ -183,10 +184,10 @@ void warn_of_held_gaze(const std::vector<FrameRequest>& frames, const GazeLog& l
                     "`frames` before, or give `gaze-missing`",
                     after_end, frames.size(), first_after));
   }
-  if (held > after_end) {
+  if (held > 0) {
     warnings.push_back(
         fmt::format("{} of {} frames have no gaze of their own and hold the nearest one in the past, or the first",
-                    held - after_end, frames.size()));
+                    held, frames.size()));
   }
 }
 

@@ -88,6 +88,8 @@ MISTAKES = [
     ("a folder by an option", {}, ["demo", "-o", "out"], ["'-o' is no option here", "gazetrace demo FOLDER"]),
     ("memory without a unit", {}, ["render", "box.gltf", *JOB, "--max-memory", "4"], ["box.gltf: ", "the limit is 4 bytes", "--max-memory"]),
     ("a lens by another name", {}, ["render", "box.gltf", *JOB, "--fstop", "2.8"], ["--fstop: ", "--aperture", "--focus-distance"]),
+    ("a parameter where there is none", {}, ["render", "box.gltf", *JOB, "--sampling", "adaptive:pilot=4"], ["--sampling: ", "no parameters such as 'pilot=4'", "leave it out"]),
+    ("a video in place of pictures", {}, ["render", "box.gltf", "--size", "32x18", "-o", "a:b.mp4"], ["a:b.mp4: ", "a video is made of pictures", "gazetrace video"]),
     ("a processor of graphics", {}, ["render", "box.gltf", *JOB, "--gpu"], ["--gpu: ", "runs on the processor"]),
 ]  # fmt: skip
 
@@ -139,6 +141,18 @@ class Mistakes(harness.CliTest):
         told = self.run_ok(*job, "--gaze-latency", "5s").stderr
         self.assertIn("5 of 5 frames lie before the first row of the gaze log: check --gaze-latency", told)
         self.assertNotIn("before the first row", self.run_ok(*job, "--gaze-latency", "30ms").stderr)
+
+    def test_frames_after_the_log_are_told_of(self):
+        """The log ends at 0.99 s. Of frames 20 to 30, at 24 a second, 25 to 30 are later, and from 27 on more than 75 ms."""
+        self.write("log.csv", harness.moving_gaze())
+        job = ["box.gltf", "--gaze", "log.csv", "--size", "32x18", "--fps", "24"]
+        line = "4 of 11 frames, from frame 27 on, lie after the end of the gaze log and hold its last gaze: end --frames before, or give --gaze-missing"
+        self.assertIn(line, self.run_ok("plan", *job, "--frames", "20-30").stderr)
+        said = self.run_ok("render", *job, "--frames", "20-30", "--spp", "1", "-o", "f.####.png").stderr
+        self.assertEqual(said.count(line), 1, said)
+        self.assertLess(said.index(line), said.index("frame 20 done"))
+        for rest in (["--frames", "20-24"], []):
+            self.assertNotIn("after the end", self.run_ok("plan", *job, *rest).stderr)
 
     def test_a_scene_is_read_by_its_content(self):
         """JSON under any name is glTF, and no foreign name hides it."""
