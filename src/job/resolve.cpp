@@ -179,7 +179,9 @@ void warn_of_inputs(const CameraPath& camera, const GazeLog* log, ResolveScope s
   if (scope != ResolveScope::digests) {
     const SamplingNotes notes = sampling_notes(resolved.job, resolved.plan);
     append(resolved.warnings, notes.warnings);
-    if (!notes.decision.empty()) {
+    // The choice of a sampling for a stated quality has a line of its own.
+    const bool is_told = job.foveation.target.is_given() && !resolved.job.sources.contains("sampling");
+    if (!notes.decision.empty() && !is_told) {
       resolved.decisions.emplace_back("sampling", notes.decision);
     }
   }

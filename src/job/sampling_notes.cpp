@@ -13,13 +13,24 @@ namespace {
 
 constexpr double kLeastSaving = 1.1;
 
-bool is_known_before(const FoveationSettings& foveation) {
-  return traits_of(foveation.sampling).needs_gaze && !foveation.target.is_given();
-}
-
 std::string name_of(const Sampling& sampling) {
   const auto* density = std::get_if<DensitySampling>(&sampling);
   return density == nullptr ? "`sampling` " + to_string(sampling) : "`density` " + to_string(*density);
+}
+
+// Where the gaze decides nothing, or where rates are known only once a frame is looked at.
+std::string rates_without_gaze(const FoveationSettings& foveation) {
+  const SamplingTraits traits = traits_of(foveation.sampling);
+  if (foveation.target.is_given()) {
+    return "as many samples as the stated quality takes";
+  }
+  if (!foveation.spp && traits.follows_picture && !traits.looks_first) {
+    return "as many samples as the picture states";
+  }
+  return fmt::format("{} samples a pixel {}", foveation.spp.value_or(kUsualSpp),
+                     !traits.follows_picture ? "everywhere, wherever the eye looks"
+                     : traits.looks_first    ? "on average, more where a pilot of the frame finds noise"
+                                             : "on average, spread by the picture");
 }
 
 std::string remedies(const Sampling& sampling) {
@@ -36,8 +47,12 @@ SamplingNotes sampling_notes(const Job& job, const FramePlan& plan) {
   const auto frame = std::find_if(plan.frames.begin(), plan.frames.end(), [](const FrameRequest& request) {
     return request.gaze_direction_render.has_value();
   });
-  if (!is_known_before(foveation) || frame == plan.frames.end()) {
+  const SamplingTraits traits = traits_of(foveation.sampling);
+  if (frame == plan.frames.end() && !traits.follows_picture) {
     return {};
+  }
+  if (!traits.needs_gaze || foveation.target.is_given()) {
+    return {name_of(foveation.sampling) + ": " + rates_without_gaze(foveation), {}};
   }
   const PlannedRates rates = planned_rates(foveation, *frame, job.settings.trace.seed, job.settings.threads);
   const double saving = rates.most_spp / rates.mean_spp;

@@ -99,6 +99,24 @@ class IdleOptions(harness.CliTest):
         self.assertEqual(said("glide.gltf", "--filter", "guided"), "")
         self.assertEqual(said("box.gltf", "--filter", "guided", "--shutter", "180deg"), "")  # nothing moves
 
+    def test_one_line_on_sampling_before_the_first_frame(self):
+        logged = [*harness.SCREEN, "--size", "64x36", "--gaze", "log.csv", "--frames", "3"]
+        eyeless = ["--size", "64x36"]
+        for gaze, options, line in (
+            (logged, [], "--density acuity: 2 samples a pixel in frame 3, 2 where the eye looks"),
+            (logged, ["--sampling", "regions"], "--sampling regions: 1.37 samples a pixel in frame 3, 32 where the eye looks"),
+            (logged, ["--sampling", "uniform"], "--sampling uniform: 32 samples a pixel everywhere, wherever the eye looks"),
+            (logged, ["--sampling", "adaptive", "--spp", "4"], "--sampling adaptive: 4 samples a pixel on average, more where a pilot"),
+            (logged, ["--sampling", "adaptive", "--target-relmse", "0.5"], "--sampling adaptive: as many samples as the stated quality takes"),
+            (logged, ["--target-relmse", "0.5"], "adaptive, since a quality is stated"),
+            (eyeless, [], "32 samples a pixel everywhere: there is no gaze"),
+            (eyeless, ["--sampling", "adaptive", "--spp", "4"], "--sampling adaptive: 4 samples a pixel on average, more where a pilot"),
+        ):
+            with self.subTest(options=options, gaze=gaze is logged):
+                said = self.run_ok("render", "box.gltf", *gaze, *options, "--accumulate", "off", "-o", "f.exr", "--overwrite").stderr
+                self.assertEqual(said.count("\nsampling: "), 1, said)
+                self.assertLess(said.index("\nsampling: " + line), said.index("frame " + ("3" if gaze is logged else "1") + " done"))
+
     def test_unknown_names(self):
         for option, text in (("--filter", "unknown filter 'x'; Known: none, linear"), ("--sampling", "unknown sampling 'x'; Known: regions"), ("--density", "unknown density 'x'; Known: acuity"),
                              ("--preset", "unknown preset 'x'; Known: paper")):
