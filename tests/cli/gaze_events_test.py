@@ -167,6 +167,8 @@ class GazeTools(harness.CliTest):
             for fps, frames in (("25", [3, 8]), ("50", [5, 16]), ("2", [1])):  # 250 ms lies in the second alone
                 result = self.run_ok("plan", *job, "--size", "64x48", "--fps", fps, "--json")
                 self.assertEqual([frame["frame"] for frame in json.loads(result.stdout)["frames"]], frames, (whose, fps))
+                lost = 2 - len(frames)
+                self.assertIn(f"one for each fixation; of 2 fixations ({whose}), {lost} lie between frames and 0 outside", result.stderr)
             said = self.run_ok("render", *job, "--size", "16x12", "--fps", "25", "--spp", "1", "-o", "f.####.png", "--overwrite").stderr
             self.assertIn("one for each fixation", said)
             self.assertIn(whose, said)

@@ -203,8 +203,10 @@ int run_plan(const PlanArguments& arguments) {
                       request.frame, request.window);
   }
   print_warnings(resolved.warnings);
+  const bool are_of_fixations = job.frames && job.frames->frames.empty();
   for (const auto& [name, text] : resolved.decisions) {
-    if (name.starts_with("replaced ") || name == "accumulate" || (name == "sampling" && resolved.gaze)) {
+    if (name.starts_with("replaced ") || name == "accumulate" || (name == "sampling" && resolved.gaze) ||
+        (name == "frames" && are_of_fixations)) {
       std::fprintf(stderr, "%s: %s\n", name.c_str(), with_flags(text).c_str());
     }
   }
