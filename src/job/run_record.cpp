@@ -113,8 +113,8 @@ Warnings result_warnings(const SequenceResult& result, const FramePlan& plan) {
   }
   if (result.dark_pictures > 0) {
     warnings.push_back(
-        fmt::format("{} of {} pictures {} dark, half of each below 2 % of white: `exposure` (auto, or more stops) "
-                    "and `env` (sky, or a picture) bring light",
+        fmt::format("{} of {} pictures {} dark, half of each below 2 % of white: `exposure` (auto, auto+2 or a "
+                    "number of stops) and `env` (sky, or a picture) bring light",
                     result.dark_pictures, result.rows.size(), result.dark_pictures == 1 ? "is" : "are"));
   }
   const double backs =
