@@ -10,6 +10,7 @@
 
 #include "gazetrace/error.hpp"
 #include "job/outputs.hpp"
+#include "job/schema/idle_rules.hpp"
 
 namespace gazetrace {
 namespace {
@@ -34,7 +35,7 @@ Job with_default_sampling(Job job, Decisions* decisions) {
       !job.sources.contains("sampling") && to_string(foveation.sampling) == to_string(JobSettings().foveation.sampling);
   const auto choose = [&](const char* sampling, const char* reason) {
     job_schema().find("sampling")->assign(job.settings, {sampling}, "`sampling`");  // which keeps what others are
-    if (decisions != nullptr) {
+    if (decisions != nullptr && (has_gaze(job.settings) || follows_picture(job.settings.foveation.sampling))) {
       decisions->emplace_back("sampling", std::string(sampling) + ", since " + reason);
     }
   };

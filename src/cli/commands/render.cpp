@@ -54,10 +54,16 @@ void tell_warnings(const Warnings& warnings, RunEvents& events) {
 
 void say_decisions(const StartedRun& run) {
   const ResolvedJob& resolved = run.resolved;
+  const auto say = [&](bool of_sampling) {
+    for (const auto& [name, text] : resolved.decisions) {
+      if ((name == "sampling") == of_sampling) {
+        std::fprintf(stderr, "%s: %s\n", name.c_str(), with_flags(text).c_str());
+      }
+    }
+  };
+  say(true);  // first, where a gaze that somebody forgot is seen
   std::fprintf(stderr, "scene: %s, loaded in %.2f s\n", resolved.scene->source.c_str(), resolved.load_s);
-  for (const auto& [name, text] : resolved.decisions) {
-    std::fprintf(stderr, "%s: %s\n", name.c_str(), with_flags(text).c_str());
-  }
+  say(false);
   std::fprintf(stderr, "view: %s\n", run.color->description().c_str());
   std::fprintf(stderr, "rays: %s, tree of %.0f MiB built in %.2f s\n", run.tracer.ray_library().c_str(),
                static_cast<double>(run.tracer.memory().bvh_bytes) / 1048576.0, run.tracer.memory().build_s);
