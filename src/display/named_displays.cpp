@@ -38,7 +38,7 @@ NamedDisplay display_of(const Headset& headset) {
                                                           {headset.pixels_per_degree, headset.pixels_per_degree});
   geometry.luminance_cd_m2 = headset.luminance_cd_m2;
   return {headset.display,
-          fmt::format("one eye of a {}: {}x{}, {:.3g} pixels a degree ({}); field {} deg, up to {:g} Hz", headset.model,
+          fmt::format("{}, one eye: {}x{}, {:.3g} pixels a degree ({}); field {} deg, up to {:g} Hz", headset.model,
                       headset.width_px, headset.height_px, headset.pixels_per_degree, headset.density, field,
                       headset.rate_hz),
           geometry};
