@@ -64,7 +64,8 @@ class Reconstruction {
   [[nodiscard]] const ReconstructionNeeds& needs() const { return filter_.needs; }
 
   // The settings under which the tracer collects the filter's inputs: sums per surface of the sites that it changes.
-  [[nodiscard]] TraceSettings trace_settings(TraceSettings settings) const;
+  // `map`: where the samples go, if that is known, so that they are split only for a filter that makes use of it.
+  [[nodiscard]] TraceSettings trace_settings(TraceSettings settings, const SamplingMap* map = nullptr) const;
   // The settings of the guides that the filter needs, for samples that are traced with `trace`: their materials are
   // those of the samples. Empty: the filter needs no guides. `joins`: a window's frames join, whose samples have seen
   // most features often, and one ray is enough.

@@ -53,8 +53,12 @@ struct TraceSettings {
   bool surfaces = false;      // collect SparseFrame::surfaces
   // Splits the samples of every site into two halves of independent scramblings: sample k is number k / 2 of one of
   // them. Their difference says how far off their mean is (SparseFrame::half_difference). Each half is stratified by
-  // itself, so that a mean over both has a little more noise than one over a single sequence.
+  // itself, so that a mean over both has more noise than one over a single sequence: an eighth to a quarter more
+  // squared error with four samples.
   bool halves = false;
+  // false: the halves are the even and the odd samples of a single sequence, whose mean is better, and whose difference
+  // is larger than the mean's error.
+  bool independent_halves = true;
   bool first_half = false;               // with halves: collect SparseFrame::first_half
   std::optional<PixelIndex> only_pixel;  // trace only the site that holds this pixel
   // Asked before every piece of work, from several threads: once it is true, tracing ends with Error(interrupted), and

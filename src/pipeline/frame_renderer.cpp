@@ -95,7 +95,7 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request, TrainedField& know
   });
   traced.map.x_px = request.window.x_px;
   traced.map.y_px = request.window.y_px;
-  TraceSettings settings = reconstruction_.trace_settings(frame_settings.trace);
+  TraceSettings settings = reconstruction_.trace_settings(frame_settings.trace, &traced.map);
   settings.light_groups = settings_.layers.light;
   settings.surfaces = settings.surfaces || settings_.accumulate.mode == AccumulateMode::window;
   traced.sparse =

@@ -20,6 +20,8 @@ struct FilterInput {
 
 struct FilterDefinition {
   ReconstructionNeeds needs = {};  // reconstruct.cpp checks that they are met
+  // Whether the halves of a map's samples must be independent; empty: always.
+  bool (*needs_independent_halves)(const SamplingMap& map) = nullptr;
   Frame (*frame)(const FilterInput& input);
 };
 

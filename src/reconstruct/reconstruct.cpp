@@ -87,10 +87,12 @@ Reconstruction::Reconstruction(const ReconstructionSettings& settings) {
   filter_ = info_of(named);
 }
 
-TraceSettings Reconstruction::trace_settings(TraceSettings settings) const {
+TraceSettings Reconstruction::trace_settings(TraceSettings settings, const SamplingMap* map) const {
   settings.surfaces = filter_.needs.surfaces;
   settings.halves = filter_.needs.halves;
   settings.first_half = filter_.needs.first_half;
+  const auto& needs_independent = definition_->needs_independent_halves;
+  settings.independent_halves = map == nullptr || needs_independent == nullptr || needs_independent(*map);
   return settings;
 }
 

@@ -95,7 +95,7 @@ class RangeTracer {
  private:
   [[nodiscard]] SampleList samples_of(const SiteRange& range) const {
     const TraceSettings& settings = context_.settings;
-    return {map_, range.first, range.count, settings.seed, frame_, settings.halves};
+    return {map_, range.first, range.count, settings.seed, frame_, settings.halves, settings.independent_halves};
   }
 
   const FrameContext& context_;

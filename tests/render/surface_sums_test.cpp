@@ -136,6 +136,18 @@ TEST(SurfaceSums, HalvesTellTheVarianceOfTheMeanOfAllSamples) {
   EXPECT_NEAR(bias, 0, 4 * of_bias);
 }
 
+// Halves that nobody reads cost nothing: all samples are those of a single sequence.
+TEST(SurfaceSums, HalvesThatNeedNotBeIndependentAreThoseOfOneSequence) {
+  const Scene scene = lit_scene();
+  PathTracer tracer(scene, threads(2));
+  const SamplingMap map = foveated_map();
+  TraceSettings settings = with_halves();
+  const auto sums = [&](const TraceSettings& one) { return tracer.at_rest().trace(kCamera, 0, map, one).sum; };
+  EXPECT_NE(sums(settings), sums({}));
+  settings.independent_halves = false;
+  EXPECT_EQ(sums(settings), sums({}));
+}
+
 TEST(SurfaceSums, SameBitsForAnyThreadCount) {
   const Scene scene = lit_scene();
   const SamplingMap map = foveated_map();

@@ -12,7 +12,7 @@ SiteSequence SampleList::sequence_of_site(const Site& site, int first_x, int fir
   return {make_sample_key(seed_, frame_,
                           (static_cast<std::uint64_t>(map_->y_px + first_y) << 32U) |
                               static_cast<std::uint64_t>(map_->x_px + first_x)),
-          halves_, static_cast<std::uint8_t>((site.block_x ^ site.block_y) & 1)};
+          halves_, independent_halves_, static_cast<std::uint8_t>((site.block_x ^ site.block_y) & 1)};
 }
 
 GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBatch& out) {

@@ -18,8 +18,14 @@ namespace gazetrace {
 class SampleList {
  public:
   SampleList(const SamplingMap& map, std::uint32_t first_site, std::uint32_t site_count, std::uint64_t seed,
-             std::int32_t frame, bool halves = false)
-      : map_(&map), site_(first_site), end_(first_site + site_count), seed_(seed), frame_(frame), halves_(halves) {}
+             std::int32_t frame, bool halves = false, bool independent_halves = true)
+      : map_(&map),
+        site_(first_site),
+        end_(first_site + site_count),
+        seed_(seed),
+        frame_(frame),
+        halves_(halves),
+        independent_halves_(independent_halves) {}
 
   // Fills in up to kBatchSize samples and returns their number, which is 0 at the end.
   int next(const PixelFilterSampler& filter, SampleBatch& out);
@@ -32,7 +38,7 @@ class SampleList {
   std::uint32_t sample_ = 0;
   std::uint64_t seed_;
   std::int32_t frame_;
-  bool halves_;  // as TraceSettings::halves
+  bool halves_, independent_halves_;  // as TraceSettings
   std::vector<PixelIndex> pixels_;
 };
 

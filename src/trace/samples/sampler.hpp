@@ -54,9 +54,9 @@ struct SamplePoint {
 // Where the samples of a site are in the sequences of random numbers.
 struct SiteSequence {
   SampleKey key;
-  // As TraceSettings::halves: there are two sequences, and samples belong to them in turn, the first of a site to
-  // sequence (first + odd) % 2. Sites of a single sample thus are in both.
-  bool halves = false;
+  // As TraceSettings: samples belong to two halves in turn, the first of a site to half `odd`, so that sites of a
+  // single sample are in both. Each half has a sequence of its own where they are independent.
+  bool halves = false, independent_halves = true;
   std::uint8_t odd = 0;
 };
 
@@ -67,8 +67,10 @@ struct SiteSequence {
   SampleKey key = site.key;
   if (site.halves) {
     half = static_cast<std::uint8_t>((at + site.odd) & 1U);
-    at >>= 1U;
-    key = half == 0 ? key : SampleKey{hash64(key.value + 0x68616c66ULL)};
+    if (site.independent_halves) {
+      at >>= 1U;
+      key = half == 0 ? key : SampleKey{hash64(key.value + 0x68616c66ULL)};
+    }
   }
   return {key, at, half};
 }

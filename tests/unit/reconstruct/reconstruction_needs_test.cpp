@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "gazetrace/display.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/foveation.hpp"
 #include "gazetrace/reconstruct.hpp"
 
 namespace gazetrace::reconstruction_needs_test {
@@ -34,6 +36,19 @@ TEST(ReconstructionNeeds, TheTracerIsToldThem) {
   EXPECT_EQ(guided.seed, 7U);
   trace.surfaces = true;  // left over from another filter
   EXPECT_FALSE(Reconstruction({"linear"}).trace_settings(trace).surfaces);
+}
+
+// The network's halves are read from 16 samples a pixel on; guided always reads them.
+TEST(ReconstructionNeeds, SamplesAreSplitForThoseWhoReadTheHalves) {
+  FoveationSettings settings;
+  settings.sampling = UniformSampling{};
+  for (const int spp : {15, 16}) {
+    settings.spp = spp;
+    const SamplingMap map = make_sampling_map(settings, view_of_perspective(1.0, 64, 36), {});
+    EXPECT_EQ(Reconstruction({"oidn"}).trace_settings({}, &map).independent_halves, spp == 16);
+    EXPECT_TRUE(Reconstruction({"guided"}).trace_settings({}, &map).independent_halves);
+  }
+  EXPECT_TRUE(Reconstruction({"oidn"}).trace_settings({}).independent_halves);
 }
 
 // One ray stands for a pixel, so that its cone is as wide as that; materials are those of the samples.
