@@ -64,11 +64,12 @@ class Reconstruction {
   [[nodiscard]] const ReconstructionNeeds& needs() const { return filter_.needs; }
 
   // The settings under which the tracer collects the filter's inputs: sums per surface of the sites that it changes.
-  // `map`: where the samples go, if that is known, so that they are split only for a filter that makes use of it.
+  // `map`: where the samples go, if that is known. The halves are then independent (TraceSettings) only for a filter
+  // that reads them.
   [[nodiscard]] TraceSettings trace_settings(TraceSettings settings, const SamplingMap* map = nullptr) const;
   // The settings of the guides that the filter needs, for samples that are traced with `trace`: their materials are
-  // those of the samples. Empty: the filter needs no guides. `joins`: a window's frames join, whose samples have seen
-  // most features often, and one ray is enough.
+  // those of the samples. Empty: the filter needs no guides. `joins`: the frames of a window join. Their
+  // samples have seen most features many times, so one ray a pixel is enough.
   [[nodiscard]] std::optional<GuideSettings> guide_settings(const TraceSettings& trace, bool joins = false) const;
 
   // A site without samples takes its value from its neighbours. `guides`: of the map's size, nullptr unless the filter

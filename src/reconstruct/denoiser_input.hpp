@@ -27,11 +27,11 @@ struct DenoiserInput {
 inline constexpr int kDenoiserGuideRays = 4;
 
 // `sparse` holds surfaces and first hits (TraceSettings::surfaces), and may hold a first half; `guides` are of the
-// map's size. Albedo and normal are means over these rays and the samples of a site of
-// one pixel; over the samples alone where they see through lens and shutter what the pinhole of the guides sees
-// elsewhere. Sites of several pixels give each of them one light, times its own albedo, so that their mean is that of
-// the samples (denoiser_levels.hpp shows them to the network block by block). Sites without samples show the light of
-// the surfaces around.
+// map's size. Albedo and normal are means over the guides' rays and the samples of a site of one pixel; over the
+// samples alone where they see through lens and shutter what the pinhole of the guides sees elsewhere. Sites of several
+// pixels give each of them one light, times its own albedo, so that their mean is that of the samples
+// (denoiser_levels.hpp shows them to the network block by block). Sites without samples show the light of the surfaces
+// around.
 DenoiserInput denoiser_input(const SparseFrame& sparse, const SamplingMap& map, const Guides& guides, int threads);
 
 }  // namespace gazetrace

@@ -21,10 +21,10 @@ thread. Both trace the frames around the clip that a window reads, so that their
 by frame: the time of a call on one thread, added to that of raw.
 
 Scores: JOD of the clip by pyfvvdp (FovVideoVDP 1.2, foveated, gaze in the middle), every picture shown by one curve
-(exposure of the clip, Reinhard, sRGB) beside a raw reference; Cycles beside one of its own where its mean is 1 % off. `flicker`: mean
-absolute change, from a frame to the next, of the difference between a clip and its reference, shown. `beside halves`: the
-score less its mean beside the halves of the reference, whose noise is twice as large in the square: as much is still
-missing for the noise of the whole. A level counts where that is below 0.1.
+(exposure of the clip, Reinhard, sRGB) beside a raw reference; Cycles beside one of its own where its mean is 1 %
+off. `flicker`: mean absolute change, from a frame to the next, of the difference between a clip and its reference, shown.
+`beside halves`: the score beside the reference less the mean of those beside its two halves, whose variance is twice as
+large. About as much again would be gained beside a reference without noise. A level counts where that is below 0.1.
 """
 
 import argparse
@@ -213,6 +213,8 @@ def main():
     parser.add_argument("--bpy-python", help="a Python with bpy 5.0, for the row cycles")
     parser.add_argument("--cycles-rates", default="4,16,64")
     options = parser.parse_args()
+    if options.reference_spp < 2 * PART_SPP or options.reference_spp % (2 * PART_SPP) != 0:
+        parser.error(f"--reference-spp: give a multiple of {2 * PART_SPP}, so that the reference has two halves")
     all_clips = clips(options.shared, HERE.parents[2])
     bench, judge, rows = Bench(options), Judge(), options.rows.split(",")
     rates = [float(r) if "." in r else int(r) for r in options.rates.split(",")]
